@@ -132,7 +132,7 @@ class AsLoadedContext:
     def _opened(self, urdf: Path) -> EngineFile | Unloadable:
         try:
             root = self.mechanism.links[int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])]
-            loaded = load_file(self.engine, urdf, root, self.request.package_dirs)
+            loaded = load_file(self.engine, urdf, root)
         except Unloadable as error:
             return error
         known = set(loaded.joints) <= set(self.mechanism.joints)
@@ -140,8 +140,8 @@ class AsLoadedContext:
 
     @property
     def floats(self) -> bool:
-        """True if the file has a floating or planar joint."""
-        return any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
+        """True if the file has a joint that is neither hinge nor slide."""
+        return self.native is not None or any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
 
     @property
     def loaded(self) -> EngineFile:
@@ -200,9 +200,16 @@ class AsLoadedContext:
     @cached_property
     def overlaps(self) -> tuple[Overlap, ...]:
         """At rest, the deepest first, of links that can move against each other: nothing pushes others apart."""
-        body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
         found = self.loaded.overlaps(self.values)
-        return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
+        return tuple(item for item in found if self._body(item.links[0]) != self._body(item.links[1]))
+
+    def _body(self, link: str) -> int:
+        """The rigid body of a link; what stands in the world besides is one with the root."""
+        return int(self.mechanism.body_of_link[self._link[link]]) if link in self._link else 0
+
+    @cached_property
+    def _link(self) -> dict[str, int]:
+        return {name: number for number, name in enumerate(self.mechanism.links)}
 
     @cached_property
     def passive_run(self) -> EngineRun:
@@ -238,9 +245,9 @@ class AsLoadedContext:
 
     def between(self, travel: Travel, overlaps: Iterable[Overlap]) -> Overlap | None:
         """Return the deepest of the overlaps that a joint moves apart or together; None without any."""
-        body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
         moved = self.mechanism.moved[self.mechanism.travels.index(travel)]
-        return next((item for item in overlaps if moved[body[item.links[0]]] != moved[body[item.links[1]]]), None)
+        sides = ((item, [moved[self._body(link)] for link in item.links]) for item in overlaps)
+        return next((item for item, (first, second) in sides if first != second), None)
 
     @cached_property
     def hands(self) -> tuple[VelocityProbe, ...]:

@@ -38,6 +38,8 @@ class StageRequest:
     """A copy of the file with every mesh by its absolute path, for engines that find the meshes nowhere else."""
     native: Path | None = None
     """The file that MuJoCo opens in place of `urdf`."""
+    apart: frozenset[frozenset[str]] = frozenset()
+    """Pairs of links that the file keeps from colliding and `urdf` cannot."""
     losses: tuple[str, ...] = ()
     """What the file holds and `urdf` does not, one sentence each."""
     free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from kinematify.robot.description import Description
     from kinematify.validation.finding import Finding
 
+_OF_LIMITS = ("KV220", "KV801", "KV805")
+"""Checks of limits, which a URDF has to state."""
 _OF_TEXT = ("KV104", "KV144")
 """Checks of the URDF's text, which say nothing about a file of another format."""
 
@@ -71,8 +73,10 @@ class ValidatedFile:
         line = next((line for name in named if (line := self.lines.get(name))), None)
         if self.form is None:
             return replace(finding, line=finding.line or line)
-        if finding.check in _OF_TEXT or (finding.check == "KV220" and finding.joint in self.endless):
+        if finding.check in _OF_TEXT or (finding.check in _OF_LIMITS and finding.joint in self.endless):
             return None
+        if finding.check == "KV201" and self.form == "MJCF":
+            return None  # MuJoCo compiles no body that moves without mass; links between joints of one body have none
         if finding.engine is None or (finding.engine == "mujoco" and self.native):
             return replace(finding, line=line)
         message = f"{finding.message} ({ENGINES[finding.engine].title} was given the URDF of the {self.form}.)"

@@ -64,6 +64,8 @@ class Description:
     """Slides without limits, which a URDF cannot say."""
     native: bool = False
     """MuJoCo opens `path` itself, and has the same joints there."""
+    apart: frozenset[frozenset[str]] = frozenset()
+    """Pairs of links that the file keeps from colliding, which a URDF cannot say."""
 
     @property
     def title(self) -> str:
@@ -186,10 +188,13 @@ def open_description(
     lines = {("link", link.name): link.line for link in robot.links}
     lines |= {("joint", joint.name): joint.line for joint in robot.joints}
     # MuJoCo's own names and none of ours, and nothing that moves in other ways.
-    ours = any(joint.declared_kind in ("floating", "ball") or _OUR_NAME.fullmatch(joint.name) for joint in joints)
+    ours = any(joint.declared_kind == "ball" or _OUR_NAME.fullmatch(joint.name) for joint in joints)
     native = form == "mjcf" and not ours
     endless = frozenset(joint.name for joint in robot.joints if joint.kind == "prismatic" and not joint.has_limit)
-    return Description(path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes), endless=endless, native=native)
+    return Description(
+        path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes), endless=endless, native=native,
+        apart=robot.apart,
+    )  # fmt: skip
 
 
 def urdf_for(path: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[str, str] | None = None) -> Path:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -73,7 +74,22 @@ def read_mjcf(path: Path, *_: Any) -> Robot:
         ]
     poses = {name: _pose(data.xpos[k], data.xquat[k]) for k, name in enumerate(names)}
     title = spec.modelname or path.stem
-    return tree_of(title, path, bodies, edges, poses=poses, loops=loops, notes=notes, losses=losses)
+    robot = tree_of(title, path, bodies, edges, poses=poses, loops=loops, notes=notes, losses=losses)
+    return replace(robot, apart=_apart(model, names))
+
+
+def _apart(model: Any, names: list[str]) -> frozenset[frozenset[str]]:
+    """Pairs of bodies whose shapes `contype` and `conaffinity`, an `exclude` or a switch keep from colliding."""
+    kinds, masks, body = model.geom_contype, model.geom_conaffinity, model.geom_bodyid
+    acting = np.argwhere((kinds[:, None] & masks) | (kinds & masks[:, None]))
+    listed = np.column_stack([model.pair_geom1, model.pair_geom2])
+    excluded = {frozenset((int(pair) >> 16, int(pair) & 0xFFFF)) for pair in model.exclude_signature}
+    meeting = {frozenset(pair) for pair in body[acting].tolist()} - excluded
+    meeting |= {frozenset(pair) for pair in body[listed].tolist()}
+    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONTACT:
+        meeting = set()
+    pairs = combinations(sorted({*body[(kinds | masks) > 0].tolist()}), 2)
+    return frozenset(frozenset(names[k] for k in pair) for pair in pairs if frozenset(pair) not in meeting)
 
 
 def _compiled(spec: Any) -> tuple[Any, dict[str, str]]:

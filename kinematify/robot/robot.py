@@ -261,6 +261,8 @@ class Robot:
     """As many as links less one: one root, no cycle."""
     loops: tuple[LoopJoint, ...] = ()
     """What closes chains besides."""
+    apart: frozenset[frozenset[str]] = frozenset()
+    """Pairs of links with collision geometry that the file keeps from colliding."""
     path: Path = Path()
     """The URDF file, absolute; the working directory for what was read from none."""
     notes: tuple[str, ...] = ()

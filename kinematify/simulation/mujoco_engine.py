@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 from lxml import etree
 
-from kinematify.robot.transforms import quaternion_of
+from kinematify.robot.transforms import pose_at, quaternion_of
 from kinematify.simulation.configurations import GRAVITY, PIN_SOLIMP, PIN_SOLREF
 from kinematify.simulation.engine_file import EngineFile, Unloadable
 from kinematify.simulation.world import (
@@ -562,8 +562,10 @@ print(model.joint(k).name, *ends)
 )
 _LOAD = """import mujoco, numpy as np
 model = mujoco.MjModel.from_xml_path({path!r}); data = mujoco.MjData(model)
-data.qpos[:] = {values}; mujoco.mj_forward(model, data); rest = data.qpos.copy(); push = 0.0
+{held}data.qpos{q}[:] = {values}; mujoco.mj_forward(model, data); rest = data.qpos{q}.copy(); push = 0.0
 """
+_HELD = 1e9
+"""Inertia of a base that floats, which so stays where it is [kg or kg m^2]; PyBullet is asked for a fixed one."""
 _NO_CONTACTS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT\n"
 _OVERLAP = (
     _LOAD
@@ -573,7 +575,7 @@ print(max(-contact.dist for contact in data.contact if {{name(geom) for geom in 
 )
 _REST = (
     _LOAD
-    + """seen = [data.qpos[{joint}] for _ in range({steps}) if mujoco.mj_step(model, data) is None]
+    + """seen = [data.qpos{q}[{joint}] for _ in range({steps}) if mujoco.mj_step(model, data) is None]
 print(min(seen), max(seen))
 """
 )
@@ -581,20 +583,21 @@ _PUSH = (
     _LOAD
     + """{off}model.opt.gravity[:] = 0.0; seen = [rest[{joint}]]
 moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
-for _ in range({steps}): slow = {speed!r} - data.qvel[{joint}]; \
+for _ in range({steps}): slow = {speed!r} - data.qvel{v}[{joint}]; \
 push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
-data.qfrc_applied[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
+data.qfrc_applied{v}[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
 mujoco.mj_step(model, data); \
-way, speed = weights @ (data.qpos - rest)[moved], weights @ data.qvel[moved]; \
-data.qpos[:] = rest; data.qvel[:] = 0.0; data.qpos[moved] += ratios * way; data.qvel[moved] = ratios * speed; \
-seen.append(data.qpos[{joint}])
+way, speed = weights @ (data.qpos{q} - rest)[moved], weights @ data.qvel{v}[moved]; \
+data.qpos{q}[:] = rest; data.qvel{v}[:] = 0.0; \
+data.qpos{q}[moved] += ratios * way; data.qvel{v}[moved] = ratios * speed; \
+seen.append(data.qpos{q}[{joint}])
 print({farthest}(seen))
 """
 )
 _RELEASE = (
     _LOAD
     + _NO_CONTACTS
-    + """model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel[:] = {speeds}
+    + """model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel{v}[:] = {speeds}
 seen = [sum(data.energy) for _ in range({steps}) if mujoco.mj_step(model, data) is None]
 print(max(seen) - seen[0])
 """
@@ -614,23 +617,37 @@ class MujocoFile(EngineFile):
     }
 
     def __init__(self, urdf: Path, root: str) -> None:
-        """Load it.
+        """Load it; a base that floats is held, and floors of a scene are left out.
 
         Raises:
             Unloadable: MuJoCo does not open it, or moves a link in other ways than by turning or sliding.
         """
-        self._file, self._root = {"path": str(urdf)}, root
         try:
-            self._model = mujoco.MjModel.from_xml_path(str(urdf))
+            self._model = model = mujoco.MjModel.from_xml_path(str(urdf))
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
-        if self._model.nq != self._model.nv or self._model.nv != self._model.njnt:
+        base = int(model.njnt > 0 and model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE)
+        if not model.nq - 7 * base == model.nv - 6 * base == model.njnt - base:
             raise Unloadable(reproduction=_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
+        self._q, self._v = slice(7 * base, None), slice(6 * base, None)
+        held = f"model.dof_armature[:6] = {_HELD:g}; " * base
+        model.dof_armature[: 6 * base] = _HELD
+        # Planes and height fields, which come first.
+        floors = np.flatnonzero(
+            (model.geom_bodyid == 0) & (model.geom_type < mujoco.mjtGeom.mjGEOM_SPHERE.value)
+        ).tolist()
+        if floors:
+            model.geom_contype[floors] = model.geom_conaffinity[floors] = 0
+            held += f"model.geom_contype[{floors}] = model.geom_conaffinity[{floors}] = 0; "
+        self._file = {"path": str(urdf), "held": held, "q": "[7:]" * base, "v": "[6:]" * base}
         self._data, option = mujoco.MjData(self._model), self._model.opt
         self._flags, self._gravity = option.disableflags, option.gravity.copy()
         option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-        self.joints = tuple(self._model.joint(k).name for k in range(self._model.njnt))
-        ranges = zip(self.joints, self._model.jnt_limited, self._model.jnt_range.tolist(), strict=True)
+        self._bodies = {k: model.body(k).name for k in range(1, model.nbody)}
+        self._world = "world" if root in self._bodies.values() else root
+        self._root = root
+        self.joints = tuple(self._model.joint(k).name for k in range(base, self._model.njnt))
+        ranges = zip(self.joints, self._model.jnt_limited[base:], self._model.jnt_range[base:].tolist(), strict=True)
         self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
         self.time_step = float(option.timestep)
 
@@ -648,21 +665,26 @@ class MujocoFile(EngineFile):
         model, data, option = self._model, self._data, self._model.opt
         option.disableflags, option.gravity[:] = self._flags, self._gravity
         mujoco.mj_resetData(model, data)
-        data.qpos[:] = self.row(values)
+        data.qpos[self._q] = self.row(values)
         mujoco.mj_forward(model, data)
-        data.qvel[:] = 0.0 if speeds is None else self.row(speeds)
+        data.qvel[self._v] = 0.0 if speeds is None else self.row(speeds)
         mujoco.mj_energyVel(model, data)
         option.disableflags |= 0 if contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         option.gravity[:] *= gravity
 
     def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
-        """Implement `EngineFile`; links that fixed joints join are one, bodies without a name are no links."""
+        """Implement `EngineFile`; links that fixed joints join are one, bodies without a name are no links.
+
+        A link's frame lies at its joint, which an MJCF may place elsewhere in the body.
+        """
         self.begin(values, contacts=False)
-        return {
-            body.name: np.column_stack([body.xmat.reshape(3, 3), body.xpos])
-            for body in map(self._data.body, range(1, self._model.nbody))
-            if body.name
-        }
+        found, last = {}, self._model.body_jntadr + self._model.body_jntnum - 1
+        for number, name in self._bodies.items():
+            body, joints = self._data.body(number), self._model.body_jntnum[number]
+            at = self._model.jnt_pos[last[number]] if joints else np.zeros(3)
+            found[name] = pose_at(body.xpos + body.xmat.reshape(3, 3) @ at, body.xmat.reshape(3, 3))
+        T_root = np.linalg.inv(found[self._root]) if self._root in found else np.eye(4)
+        return {name: (T_root @ pose)[:3] for name, pose in found.items() if name}
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """Implement `EngineFile`."""
@@ -672,15 +694,15 @@ class MujocoFile(EngineFile):
 
     def state(self) -> tuple[FloatArray, FloatArray]:
         """Implement `EngineFile`."""
-        return self._data.qpos.copy(), self._data.qvel.copy()
+        return self._data.qpos[self._q].copy(), self._data.qvel[self._v].copy()
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
         """Implement `EngineFile`."""
-        self._data.qpos[:], self._data.qvel[:] = q, v
+        self._data.qpos[self._q], self._data.qvel[self._v] = q, v
 
     def apply(self, joint: int, force: float) -> None:
         """Implement `EngineFile`."""
-        self._data.qfrc_applied[joint] = force
+        self._data.qfrc_applied[self._v][joint] = force
 
     def energy(self) -> tuple[float, float]:
         """Implement `EngineFile`; of the state before the last step."""
@@ -691,7 +713,7 @@ class MujocoFile(EngineFile):
         mujoco.mj_forward(self._model, self._data)
         for contact in self._data.contact:
             bodies = sorted(int(self._model.geom_bodyid[geom]) for geom in contact.geom)
-            first, second = (self._model.body(body).name if body else self._root for body in bodies)
+            first, second = (self._bodies.get(body, self._world) for body in bodies)
             yield first, second, -float(contact.dist)
 
     @property
@@ -706,10 +728,10 @@ class MujocoFile(EngineFile):
         self.begin(values, contacts=True)
         inverse = np.zeros((self._model.nv, self._model.nv))
         mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))
-        return np.asarray(1.0 / np.diagonal(inverse))
+        return np.asarray(1.0 / np.diagonal(inverse)[self._v])
 
     def _links_in_code(self, links: tuple[str, str]) -> object:
-        return sorted({"world" if name == self._root else name for name in links})
+        return sorted({"world" if name == self._world else name for name in links})
 
 
 FILE, WORLD = MujocoFile, MujocoWorld

@@ -23,7 +23,7 @@ from kinematify.robot.mesh_paths import near_mesh
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Robot, forward_kinematics, joint_values
 from kinematify.robot.transforms import rotation_from_rpy
-from kinematify.validation.finding import Status
+from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run import validate
 
 MJCF = """<mujoco model="crane">
@@ -407,3 +407,38 @@ def test_robots_of_robot_descriptions_have_names(
     folder.rename(place)
     monkeypatch.setenv("ROBOT_DESCRIPTION_COMMIT", head)
     assert kinematify.load("panda").robot.name == "panda"
+
+
+CROWD = """<mujoco>
+  <option gravity="0 0 -9.81"/>
+  <worldbody>
+    <geom type="plane" size="5 5 1"/>
+    <body name="torso" pos="0 0 1">
+      <freejoint name="root"/>
+      <geom type="box" size="0.2 0.1 0.1"/>
+      <body name="left" pos="0 0.02 -0.2">
+        <joint name="left_hip" axis="0 1 0" pos="0 0 0.05" range="-30 30"/>
+        <geom name="left" type="box" size="0.03 0.03 0.1" contype="1" conaffinity="0"/>
+      </body>
+      <body name="right" pos="0 -0.02 -0.2">
+        <joint name="right_hip" axis="0 1 0" pos="0 0 0.05" range="-30 30"/>
+        <geom name="right" type="box" size="0.03 0.03 0.1" contype="1" conaffinity="{}"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_what_an_mjcf_keeps_apart_is_a_note_and_its_base_may_float(tmp_path: Path) -> None:
+    """The legs of gymnasium's walker2d overlap at zero, and its conaffinity keeps them apart."""
+    apart, meeting = (validate(written(tmp_path, f"{k}.xml", CROWD.format(k)), workers=1) for k in (0, 1))
+    (left_out,) = [item for item in apart.findings if item.check == "KV301"]
+    assert left_out.severity is Severity.NOTE
+    assert "conaffinity" in left_out.message
+    assert [item.severity for item in meeting.findings if item.check == "KV301"] == [Severity.ERROR]
+    assert "MuJoCo 2 of 2 joints move" in apart.as_loaded
+    assert not [item for item in apart.findings if item.check.startswith("KV8") and item.engine == "mujoco"]
+    assert {item.pair for item in meeting.findings if (item.check, item.engine) == ("KV802", "mujoco")} == {
+        ("left", "right")
+    }

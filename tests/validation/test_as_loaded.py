@@ -332,11 +332,13 @@ def test_what_works_in_another_engine_is_a_warning_unless_the_engine_was_named()
     assert concluded(one, None, tuple(ENGINES)[:1]) == tuple(one)
     late = replace(right, status=Status.SKIPPED, reason=not_finished("time ran out"))
     (finding,) = concluded([*opened, jam("mujoco"), late], None, DEFAULT_ENGINES)[2].findings
-    assert (finding.severity, finding.message) == (Severity.WARNING, "It jams. PyBullet gave no answer.")
+    assert (finding.severity, finding.message) == (Severity.ERROR, "It jams."), "what was measured stands"
+    (finding,) = concluded([*opened, jam("mujoco"), late], None, ("mujoco",), named=False)[2].findings
+    assert (finding.severity, finding.message) == (Severity.WARNING, "It jams. No other engine was asked.")
     refused = replace(jam("pybullet"), check="KV801", measured={})
     shut = replace(right, status=Status.SKIPPED, reason="PyBullet does not open the file (KV801)")
     (finding,) = concluded([jam("mujoco"), refused, shut], None, DEFAULT_ENGINES)[0].findings
-    assert finding.severity is Severity.WARNING, "the other engine does not open the file"
+    assert finding.severity is Severity.ERROR, "the other engine does not open the file"
     both = [*opened, jam("mujoco"), jam("pybullet")]
     assert concluded(both, None, DEFAULT_ENGINES) == tuple(both)
     assert as_loaded_words(one) == "as loaded: MuJoCo 1 of 2 joints move, PyBullet 2 of 2"

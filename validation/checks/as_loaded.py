@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from kinematify.robot.mechanism import Travel
     from kinematify.simulation.engine_file import EngineRun, Overlap
-    from kinematify.simulation.engines import EngineEntry
     from kinematify.validation.as_loaded_context import AsLoadedContext, VelocityProbe
 
 _RUNS = attrgetter("runs")
@@ -45,11 +44,6 @@ _FLOOR_OF_ENERGY = 1e-5
 _SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
 
 
-def _any(_engine: EngineEntry) -> bool:
-    """Every engine."""
-    return True
-
-
 def not_loaded(context: AsLoadedContext) -> str | None:
     """The engine has the file."""
     if isinstance(context.loading, Unloadable) and context.loading.floats and context.floats:
@@ -73,7 +67,7 @@ def _open_chains(context: AsLoadedContext) -> str | None:
     fails="As loaded: the engine does not open the file as it is",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
-    runs_in=_any,
+    runs_in=bool,
     follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL, "KV221": CauseScope.JOINT},
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -508,7 +502,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     fails="As loaded: an engine puts a link elsewhere",
     severity=Severity.ERROR,
     cause=Cause.ENGINE,
-    runs_in=_any,
+    runs_in=bool,
     follows={"KV107": CauseScope.JOINT, "KV801": CauseScope.JOINT},
     needs=(not_loaded,),
 )

@@ -116,7 +116,7 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
     sweep = motion.sweep
     meetings = [m for side in sweep.sides for m in side.meetings if m.pair not in sweep.own and m.inside]
     look, leader = motion.look, sweep.leader
-    meetings = [meeting for meeting in meetings if not look.is_disabled(meeting.pair, {leader: meeting.at})]
+    meetings = [item for item in meetings if look.left_out_by(item.pair, {leader: item.at}) is None]
     found = [meeting for meeting in meetings if motion.counts(meeting)]
     if not found:
         return

@@ -29,7 +29,8 @@ def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """Of every pair of bodies that no joint joins (links held together by fixed joints are one body), the deepest
     point of one in the other is measured in the exact meshes: above geometry.rest_overlap of the model's size it is a
     warning, above geometry.wrong an error if the visible meshes overlap as much. A body inside another one counts as
-    overlap; a body without collision geometry does not, for nothing pushes it.
+    overlap; a body without collision geometry does not, for nothing pushes it. What the SRDF leaves out, or an MJCF
+    keeps from colliding (`contype`, `conaffinity`, `exclude`), is a note.
 
     Why it matters: Engines push overlapping bodies apart in the first step, with whatever force it takes.
 
@@ -83,15 +84,16 @@ def _overlap(
         joint is None and look.shown(rest.pair) and min(rest.depth, seen) > look.scene.settings.wrong * look.scene.size
     )
     said = UNSEEN if look.clear(rest.pair, {}) else BARELY
-    left_out = look.is_disabled(rest.pair, {})
+    left_out = look.left_out_by(rest.pair, {})
     result.find(
-        (f"{message} {said}" if unseen else message) + " The SRDF leaves this pair out." * left_out,
+        (f"{message} {said}" if unseen else message)
+        + ("" if left_out is None else f" The pair is omitted by {left_out}."),
         SLIMMER
         if unseen
         else "Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
         f"in all later checks.{_start(look, rest.pair)}",
         cause=Cause.PHYSICS if unseen else None,
-        severity=Severity.NOTE if left_out else Severity.ERROR if wrong else Severity.WARNING,
+        severity=Severity.NOTE if left_out is not None else Severity.ERROR if wrong else Severity.WARNING,
         joint=joint,
         pair=look.links_at(rest.pair, {}),
         q=configuration(look.scene, {}),

@@ -35,6 +35,8 @@ _ALONG = 9
 """Places on the way at which a contact is looked at again."""
 _NEARLY = 0.01
 """What ranges of +-3.14 leave out of half a turn [rad]."""
+BY_FILE = "contype, conaffinity or <exclude>"
+"""Reason of a pair that the file itself keeps from colliding."""
 
 
 class GeometryContext:
@@ -56,7 +58,7 @@ class GeometryContext:
             seed: Of the quasi-random configurations.
             in_time: False from when on no further joint may be begun.
             compare_visible: Measure the visual geometry as well where it is another one.
-            disabled: Pairs of links that the SRDF leaves out, with its reason.
+            disabled: Pairs of links that the SRDF leaves out, with its reason, or that the file keeps from colliding.
         """
         self.scene = scene
         self.overlap = OverlapQueries(scene)
@@ -100,9 +102,10 @@ class GeometryContext:
         """True if engines collide two bodies by default: neighbours pass each other, but for those of the base."""
         return pair not in self.scene.connection_of or self.scene.bodies[pair[0]].group == 0
 
-    def is_disabled(self, pair: Pair, values: Mapping[int, float]) -> bool:
-        """True if the SRDF leaves out the two links of two bodies that meet; see `links_at`."""
-        return bool(self.disabled) and frozenset(self.links_at(pair, values)) in self.disabled
+    def left_out_by(self, pair: Pair, values: Mapping[int, float]) -> str | None:
+        """Return what leaves out the two links of two bodies that meet, see `links_at`; None if nothing does."""
+        reason = self.disabled.get(frozenset(self.links_at(pair, values))) if self.disabled else None
+        return None if reason is None else f"its {BY_FILE}" if reason == BY_FILE else "the SRDF"
 
     def thickness(self, pair: Pair) -> float:
         """Thickness of the thinner of two bodies [m]: no penetration is deeper."""

@@ -123,6 +123,7 @@ def validate(
                 deadline=settings.budget.seconds,
                 task=task,
                 native=description.path if description.native else None,
+                apart=description.apart,
                 losses=description.notes,
                 source=run.source,
             )

@@ -57,8 +57,8 @@ def concluded(
 ) -> tuple[CheckResult, ...]:
     """Say what all results mean together.
 
-    What one engine shows of the untouched file is no error where another one has none or gave no answer; what is laid
-    to an engine and only one shows is a note then, and a warning where no other engine runs the file.
+    What one engine shows of the untouched file is no error where the file works in another one; what is laid to an
+    engine and only one shows is a note then, and a warning where no other engine runs the file.
 
     A cause is as bad as the worst that follows from it, and where it is suppressed, so is what follows. A note is the
     cause of notes alone, unless it is about the link for which an engine refuses the file.
@@ -93,20 +93,16 @@ def _agreed(finding: Finding, results: Sequence[CheckResult], named: bool) -> Fi
         for other in errors
         if other.joint in (None, finding.joint) and (other.check == _ENERGY) <= (finding.check == _ENERGY)
     }
-    same = [result for result in results if result.check == finding.check]
+    same = (result for result in results if result.check == finding.check)
     ran = {result.engine for result in same if result.status in (Status.PASS, Status.FAIL)} - failing
-    opened = [item for item in results if item.check == _OPENS and item.engine and ENGINES[item.engine].runs]
-    shut = {item.engine for item in opened if item.findings and "joints" not in item.measured}
-    late = {item.engine for item in same if item.status is Status.SKIPPED and (item.unfinished or item.engine in shut)}
-    works, unknown = ([entry.title for name, entry in ENGINES.items() if name in some] for some in (ran, late))
+    works = [entry.title for name, entry in ENGINES.items() if name in ran]
     alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
     if works:
         said, severity = f" It works in {' and '.join(works)}.", Severity.NOTE if alone else Severity.WARNING
-    elif unknown or not named:
-        why = f"{' and '.join(unknown)} gave no answer" if unknown else "No other engine was asked"
-        said, severity = f" {why}.", Severity.WARNING
+    elif not named:
+        said, severity = " No other engine was asked.", Severity.WARNING
     else:
         said, severity = "", Severity.WARNING if alone else Severity.ERROR
     return replace(finding, severity=severity, message=f"{finding.message}{said}")

@@ -74,7 +74,7 @@ def meshes(request: StageRequest, recorder: Recorder) -> Robot | None:
 def geometry(request: StageRequest, recorder: Recorder) -> None:
     """Look at collision at rest and along the motion by exact geometry, without an engine."""
     from kinematify.geometry.scene import colliding_shapes, read_scene
-    from kinematify.validation.geometry.look import GeometryContext
+    from kinematify.validation.geometry.look import BY_FILE, GeometryContext
     from kinematify.validation.srdf_file import srdf_of
 
     scene = read_scene(model_of(request), request.settings.geometry, colliding_shapes, thin=True)
@@ -84,7 +84,7 @@ def geometry(request: StageRequest, recorder: Recorder) -> None:
         seed=request.settings.seed,
         in_time=lambda: request.remaining > 0.0,
         compare_visible=True,
-        disabled=None if srdf is None else srdf.disabled,
+        disabled=dict.fromkeys(request.apart, BY_FILE) if srdf is None else srdf.disabled,
     )
     few = "fewer than two bodies have geometry" if len(scene.bodies) < 2 else None
     fixed = few or (None if scene.travels else "no joint moves")
