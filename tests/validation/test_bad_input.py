@@ -128,6 +128,10 @@ ARM = """<robot name="arm">{head}
   <joint name="turn" type="revolute"><origin xyz="0 0 0.1"/><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
     <limit lower="-1" upper="1" effort="9" velocity="1"/></joint>
   <joint name="fixed" type="fixed"><origin xyz="0.3 0 0"/><parent link="arm"/><child link="tool"/></joint>
+  <link name="grip"><inertial><mass value="1e-3"/><inertia ixx="2e-8" iyy="2e-8" izz="2e-8" ixy="0" ixz="0" iyz="0"/>
+    </inertial><collision><geometry><box size="0.01 0.01 0.01"/></geometry></collision></link>
+  <joint name="close" type="prismatic"><origin xyz="0.305 0 0.02"/><parent link="arm"/><child link="grip"/>
+    <axis xyz="0 1 0"/><limit lower="-0.01" upper="0.01" effort="9" velocity="1"/></joint>
 </robot>"""
 
 
@@ -145,7 +149,7 @@ def test_meshes_are_found_where_the_file_tells_mujoco_to_look(tmp_path: Path) ->
     trimesh.creation.box(bounds=[[-0.05, -0.05, 0.0], [0.3, 0.05, 0.05]]).export(tmp_path / "meshes" / "arm.stl")
     path.write_text(ARM.format(head='<mujoco><compiler meshdir="../meshes"/></mujoco>'))
     report = validate(path, engines=("mujoco",), workers=1)
-    assert "MuJoCo 1 of 1 joints move" in report.as_loaded
+    assert "MuJoCo 2 of 2 joints move" in report.as_loaded
     assert not [item.message for item in report.findings if item.severity is not Severity.NOTE]
 
 

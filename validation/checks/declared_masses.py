@@ -67,13 +67,11 @@ def _merged(result: OpenCheck, weighed: list[Body]) -> None:
     worst = max(weighed, key=lambda body: len(extra[body]) / body.mass, default=None)
     if worst is None or not extra[worst]:
         return
-    solid = [link.name for link in extra[worst] if link.name in worst.rooms]
-    frames = [link.name for link in extra[worst] if link.name not in worst.rooms]
-    kinds = (f"{title} {', '.join(names)}" for title, names in (("frames", frames), ("solid", solid)) if names)
+    names = (f"{link.name}{'' if link.name in worst.rooms else ' (a frame)'}" for link in extra[worst])
     result.find(
         f"Links without an <inertial> that are fixed to links with one: {sum(map(len, extra.values()))}. "
         f"PyBullet gives each 1 kg: what {worst.joint} moves has {worst.mass:.3g} kg and gets {len(extra[worst])} kg "
-        f"more ({'; '.join(kinds)}).",
+        f"more: {', '.join(names)}.",
         "Write an <inertial> of 1e-6 kg for frames, and the true one for what is solid.",
         severity=Severity.WARNING if len(extra[worst]) >= worst.mass else Severity.NOTE,
         joint=worst.joint,

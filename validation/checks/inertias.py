@@ -313,8 +313,7 @@ def centres_outside(result: OpenCheck, physics: Physics) -> None:
             result.find(
                 f"The centre of mass of the link {link.name} lies {outside:.3g} m outside its geometry, which "
                 f"measures {room.diagonal:.3g} m.",
-                f"Write it inside the geometry, for instance {_middle(physics, link)}; check units and frame of "
-                "the <origin> of its <inertial>.",
+                "Write it inside the geometry: check units and frame of the <origin> of its <inertial>.",
                 severity=Severity.ERROR
                 if body.moves and outside > settings.centre_far * room.diagonal
                 else Severity.WARNING,
@@ -324,11 +323,6 @@ def centres_outside(result: OpenCheck, physics: Physics) -> None:
                 unit="m",
                 line=inertial.line,
             )
-
-
-def _middle(physics: Physics, link: Link) -> str:
-    room = physics.visual.get(link.name) or physics.collision.get(link.name)
-    return "0 0 0" if room is None else " ".join(f"{value:.4g}" for value in 0.5 * (room.low + room.high))
 
 
 def _weighed(physics: Physics) -> Iterator[tuple[Body, Link, Inertial]]:

@@ -236,9 +236,9 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
         grown, value = motion.parted(pair)
         if grown > limit:
             grown, value = min((grown, value), motion.seen_parted(pair))
-        if grown <= limit:
-            continue
         connection = scene.connection_of[pair]
+        if grown <= limit or not motion.look.is_known(connection):
+            continue
         parent, child = motion.look.parent_and_child(connection, {motion.sweep.leader: value})
         what = "turns away from its hinge" if motion.sweep.travel.turns else "leaves its guide"
         far = grown > scene.settings.far * scene.size and motion.look.allowance.gap(pair) <= limit
@@ -284,7 +284,8 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
             way = abs(side.declared - travel.rest)
             guide, held = max(motion.guide(connection, side), motion.guide(connection, side, visible=True))
             # What stands on its parent, as a lid does, or hangs on a rope, as a hook does, has no guide in the file.
-            if guide <= scene.settings.hover * scene.size or held < _GUIDED or way <= scene.settings.guide * guide:
+            known = motion.look.is_known(connection) and held >= _GUIDED
+            if guide <= scene.settings.hover * scene.size or not known or way <= scene.settings.guide * guide:
                 continue
             parent, child = motion.look.parent_and_child(connection, {motion.sweep.leader: side.declared})
             end, last = "upper" if side.sign > 0 else "lower", travel.rest + side.sign * 0.8 * guide

@@ -145,7 +145,7 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
     """
     scene, allowance = look.scene, look.allowance
     limit = scene.settings.hover * scene.size
-    for connection in scene.connections:
+    for connection in filter(look.is_known, scene.connections):
         seen = allowance if look.visible is None else look.visible.allowance
         if allowance.hovers(connection.pair, limit) and seen.hovers(connection.pair, limit):
             gap = seen.gap(connection.pair)

@@ -113,10 +113,9 @@ def wrong_reasons(result: OpenCheck, look: GeometryContext) -> None:
         links = look.links_at(pair, values) if hits.any() else ("", "")
         reason = look.disabled.get(frozenset(links))
         if reason == "Never" or (reason == "Adjacent" and pair not in look.scene.connection_of):
-            said = "never meet" if reason == "Never" else "are neighbours, and other bodies are between them"
             result.find(
-                f"The SRDF says that {links[0]} and {links[1]} {said}; they meet in {hits.sum()} of {len(rows)} "
-                "quasi-random configurations.",
+                f"The SRDF leaves out {links[0]} and {links[1]} (reason {reason!r}); they meet in {hits.sum()} of "
+                f"{len(rows)} quasi-random configurations.",
                 "Delete its disable_collisions of the two, or correct their collision geometry.",
                 pair=links,
                 q=configuration(look.scene, values),

@@ -19,12 +19,18 @@ _MILLIMETRES = 1000.0
 """Factor of the usual slip."""
 
 
+def _whole(look: MeshContext) -> str | None:
+    """Every mesh that collides."""
+    return "a mesh is missing, so that nobody knows how large its link is" if look.model.lacking else None
+
+
 @check(
     "KV157",
     title="Links are in the same unit",
     fails="A link is in another unit than the others",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    needs=(_whole,),
 )
 def unit_slips(result: OpenCheck, look: MeshContext) -> None:
     """No link is more than `oversize` times as large as the largest other one, none with a mesh file `undersize` times
@@ -91,6 +97,7 @@ def _likely_factor(ratio: float) -> str:
     fails="The model has an implausible size",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    needs=(_whole,),
 )
 def model_size(result: OpenCheck, look: MeshContext) -> None:
     """The diagonal of the model at zero lies between `small` and `large`; above `huge` it is an error if the model has

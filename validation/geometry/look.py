@@ -186,6 +186,11 @@ class GeometryContext:
         first, second = self.links_at(connection.pair, values)
         return (first, second) if first in self.scene.bodies[connection.parent].links else (second, first)
 
+    def is_known(self, connection: Connection) -> bool:
+        """True if no link that its joints join lacks a shape, so that their gap is what it seems."""
+        joints = map(self.scene.model.joint_by_name.__getitem__, connection.joints)
+        return self.scene.model.lacking.isdisjoint(name for item in joints for name in (item.parent, item.child))
+
     def on_an_axle(self, connection: Connection) -> bool:
         """True if a child turns without end about a line that runs through its parent's box too, as wheels do."""
         joint = self.scene.model.joint_by_name[connection.joints[-1]]
