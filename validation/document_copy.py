@@ -172,8 +172,8 @@ def _drop_shapes(robot: _Element, finding: Finding) -> bool:
 
 def _is_told(shape: _Element, message: str) -> bool:
     """True if a message quotes a size or a file of a shape."""
-    texts = [str(text) for item in shape.iterfind("geometry/*") for text in item.values()]
-    return any(text.rsplit("/", 1)[-1] in message for text in texts)
+    sizes = (f"{text}" for item in shape.iterfind("geometry/*") for text in item.values())
+    return any(text.rsplit("/", 1)[-1] in message for text in sizes)
 
 
 def _blank(element: _Element) -> None:

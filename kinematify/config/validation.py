@@ -55,8 +55,6 @@ class FileSettings(StageConfig):
     """Triangles that MuJoCo reads from an STL; meshes with more are a warning."""
     flat: float = 1.0e-6  # MuJoCo cannot make a hull of less, a sheet of metal has 1e-4
     """Thickness of a mesh that counts as flat, fraction of its diagonal."""
-    degenerate_share: float = 0.05  # exporters leave a few slivers; masses and normals suffer from many
-    """Share of triangles without area that is a warning."""
     oversize: float = 40.0  # at most 30 (the rail of a cart) in 190 models of robots and objects
     """Size of a link over that of the largest other link that only a slip of units explains."""
     undersize: float = 100.0  # at most 35 (a finger tip, a knob of a washing machine) in the same models

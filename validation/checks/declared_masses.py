@@ -52,9 +52,7 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
         result.find(
             f"The link {body.called}, which the joint {body.joint} moves, has no <inertial>"
             + (" and no geometry." if frame else ": PyBullet gives it 1 kg, Pinocchio nothing."),
-            "Add a small mass and inertia, such as 0.001 kg and 1e-7 kg m2."
-            if frame
-            else f"Add an <inertial>{_suggested(body.room)}.",
+            f"Add an <inertial>{_suggested(body.room)}; a frame may have 0.001 kg and 1e-7 kg m2.",
             joint=body.joint,
             link=body.called,
             line=physics.model.link_by_name[body.called].line,
@@ -74,6 +72,7 @@ def _merged(result: OpenCheck, weighed: list[Body]) -> None:
         f"more: {', '.join(names)}.",
         "Write an <inertial> of 1e-6 kg for frames, and the true one for what is solid.",
         severity=Severity.WARNING if len(extra[worst]) >= worst.mass else Severity.NOTE,
+        engine="pybullet",
         joint=worst.joint,
         link=extra[worst][0].name,
         line=extra[worst][0].line,

@@ -138,35 +138,6 @@ def flat_meshes(result: OpenCheck, look: MeshContext) -> None:
 
 
 @check(
-    "KV154",
-    title="Triangles have an area",
-    fails="Triangles have no area",
-    severity=Severity.WARNING,
-    cause=Cause.ASSET,
-)
-def degenerate_faces(result: OpenCheck, look: MeshContext) -> None:
-    """At most `degenerate_share` of the triangles of a mesh have no area; for meshes that are only seen it is a note.
-
-    Why it matters: Normals of such triangles are noise, and so are masses and contacts computed from them.
-
-    Remedy: Merge doubled vertices and delete degenerate faces.
-    """
-    result.measured["degenerate_faces"] = sum(quality.degenerate for _, quality in look.measured)
-    for file, quality in look.measured:
-        share = quality.degenerate / quality.faces
-        if share > look.settings.degenerate_share:
-            result.find(
-                f"{quality.degenerate} of the {quality.faces} triangles of the mesh {file.called} have no area.",
-                "Merge doubled vertices and delete degenerate faces, for example in MeshLab.",
-                severity=None if file.collides else Severity.NOTE,
-                link=file.first.link,
-                line=file.first.line,
-                value=share,
-                limit=look.settings.degenerate_share,
-            )
-
-
-@check(
     "KV156",
     title="Triangles face outward",
     fails="Triangles face inward",

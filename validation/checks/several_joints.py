@@ -33,14 +33,17 @@ def _two_joints(look: GeometryContext) -> str | None:
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:
     """Two parts of one size that mirror or repeat each other at rest, and whose axes do so too, have joints of one type
     whose ranges are about as wide and lead the same way. It is a finding only if no symmetry of the two explains both
-    joints.
+    joints, and one joint is in all pairs that differ: legs may bend alike in front and behind.
 
     Why it matters: One leg that bends the wrong way, or one door that opens inwards, is stopped by nothing in an
     engine.
 
     Remedy: Compare the two joints; correct the type, the axis or the limits of the one that is wrong.
     """
-    for first, second, how in twins_at_odds(look.scene):
+    found = [*twins_at_odds(look.scene)]
+    for first, second, how in found:
+        if not all({first.name, second.name} & {one.name, other.name} for one, other, _ in found):
+            continue
         result.find(
             f"{first.child} and {second.child} mirror or repeat each other, but {how}: "
             f"{' and '.join(f'{joint.name} ({_line_and_range(joint)})' for joint in (first, second))}.",
