@@ -172,7 +172,7 @@ def _drop_shapes(robot: _Element, finding: Finding) -> bool:
 
 def _is_told(shape: _Element, message: str) -> bool:
     """True if a message quotes a size or a file of a shape."""
-    sizes = (f"{text}" for item in shape.iterfind("geometry/*") for text in item.values())
+    sizes = (str(text) for item in shape.iterfind("geometry/*") for text in item.values())
     return any(text.rsplit("/", 1)[-1] in message for text in sizes)
 
 
