@@ -10,6 +10,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from kinematify.errors import InputError
 from kinematify.generate.kind_search import key_of, words_of
@@ -37,6 +38,8 @@ _SAME = 0.02  # of a size or a range, by which it may be off
 _ASIDE = 0.02  # of the whole, by which a part is beside its middle
 _UPRIGHT, _LEVEL = 0.95, 0.2  # of the z component of an axis
 _LARGER = 5.0  # times as large or as small as usual the whole may be
+_ROUND = 0.06  # of a side, by which two sides of what is round differ
+_FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cylinder 0.785
 _GAP = 0.05  # between several [m]
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
@@ -487,6 +490,17 @@ def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) ->
     apart = np.diff(np.sort(boxes.mean(axis=1), axis=0), axis=0) > 0.5 * np.ptp(boxes, axis=1).min(axis=0)
     along = 1 + apart.sum(axis=0)
     return bool(along[0] == columns and along[1:].max() == rows)
+
+
+def are_round(made: Blueprint, names: Sequence[str]) -> bool:
+    """Return True if two sides of each part are as long, and it fills no more of its box than a cylinder does."""
+    parts = [part for part in closed(made).parts if part.name in names]
+    for part in parts:
+        sides = np.sort(np.ptp(part.bounds, axis=0))
+        gaps = np.diff(sides) / sides[1:]
+        if gaps.min() > _ROUND or ConvexHull(part.vertices).volume > _FILLED * float(np.prod(sides)):
+            return False
+    return bool(parts)
 
 
 def _size_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import InputError
 from kinematify.generate.kind_search import key_of, words_of
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
+from kinematify.generate.procedural.parameter import pairs
 from kinematify.generate.request import ANGLES, UNITS, in_si
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.parameter import Parameter
@@ -41,98 +42,125 @@ number 17: seventeen
 number 18: eighteen
 number 19: nineteen
 number 20: twenty
+number 24: twenty_four
 number 30: thirty
 number 40: forty
+number 45: forty_five
 number 60: sixty
 number 90: ninety
 dimension width: width wide broad
 dimension depth: deep depth
 dimension height: height high tall
 dimension length: length long
-dimension diameter: diameter across wingspan
+dimension diameter: diameter across wingspan span
 dimension thickness: thickness thick
 side left: left
 side right: right
 side front: front
 side back: back rear
 side top: top upper
-side bottom: bottom lower underside underneath
+side bottom: bottom lower underside
 ordinal: first second third fourth fifth sixth
 relation 1: above over
-relation -1: below under beneath
+relation -1: below under beneath underneath
 motion move: move moves moving open opens opening close closes closing lift lifts lifting raise raises go goes going
 motion move: come comes travel travels travelling traveling adjust adjusts press presses extend extends extending
-motion move: movable moveable adjustable raisable raising drops rises rise rising falls removable detachable lowers
-motion slide: slide slides sliding pull pulls roll telescope telescopes telescopic telescoping retract retracts
-motion slide: retractable
+motion move: movable moveable adjustable raisable raising drops rise rises rising falls removable detachable lowers
+motion move: push pushes pulls pull roll rolls lower retract retracts retractable extendable extending drop dropping pop
+motion move: opened_up openable
+motion slide: slide slides sliding telescope telescopes telescopic telescoping
 motion hinge: swing swings swinging pivot pivots pivoting pivoted fold folds folding foldable flip flips flipping turn
-motion hinge: turns turning rotate rotates rotating rotatable drop tip tips tipping oscillates oscillating
-motion hinge: bends curls steers spread spreads leans hinged hinges hinge
+motion hinge: rocks rocking turns turning rotate rotates rotating rotatable tip tips tipping oscillates oscillating
+motion hinge: oscillate bends curls steers spread spreads leans hinged hinges hinge lean steer bend curl tippable
 motion spin: spin spins spinning revolve revolves revolving
-motion tilt: tilt tilts tilting recline reclines reclining rocks rocking
+motion tilt: tilt tilts tilting recline reclines reclining reclinable tiltable
 motion pan: yaws pan pans panning swivel swivels swiveling swivelling
+name: move open press push pull roll drop lower hinge close pop lift
 state 0: closed shut
 state 0.15: ajar
 state 1: open opened pulled pushed propped raised lowered lifted tilted turned swung extended drawn moved folded rotated
+state 1: slid reclined curled bent hinged_open flipped tipped
 degree 0.5: half partly halfway half_way midway
 degree 0.15: slightly
 degree 1: fully wide completely
-where: up down out in back forward forwards outward outwards inward away open upwards downwards off through round
-stroke: travel stroke range way opening throw
-having: with having has have featuring including plus containing holding
+stative: starts begins stands_ standing shown starting beginning drawn left currently initially
+where: up down out in back forward forwards outward outwards inward inwards away open upwards downwards off through
+where: sideways over flat apart together
+endless: endlessly continuously all_the_way full_circle right_round
+stroke: travel stroke range way opening throw movement
+having: whose where when
+having: with having has have featuring including plus containing holding carrying comes_with fitted_with equipped_with
 without: without no lacking
-refers: it its they them their that which whose each both all every
-ends: on made where mounted standing next and in for at to from by as like
-verbal: that which can to may all both each be
-asks: it they that which can could may to
+relative: that which who
+refers: it its they them their each both all every either
+limit: to by at from up_to of through about around between limited over within
+place: on at along under to of from into through behind beside near by around inside between across against onto
+place: in above over below beneath underneath opposite next_to in_front_of off beyond within
+like: for as like per
 both: to_either_side to_both_sides to_each_side in_either_direction in_both_directions in_each_direction each_way
-both: either_way to_either_direction
-place: on at along under to of from into through behind beside near by around inside between
-beside row: side_by_side in_a_row
-beside column: in_a_column
-lines: row rows
-lines: column columns
-filler: a an the of and to in on at by for from is are be been being can may could must i we you like want need please
-filler: make build create generate give show draw design get me us my our your some any this these those there made out
-filler: into as so would will let have standing side hand end ends object item thing model piece set also then kind type
-filler: sort hi hello hey thanks where when while itself own u about approximately roughly approx around exactly inside
-filler: along wants wanted do must plain stacked colour color through between up_to one_of way edge line middle center
-filler: whole throughout part parts one
-plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant stylish fancy cute cosy cozy
-plain: beautiful pretty lovely nice cool sturdy robust strong durable solid heavy duty professional practical simple
-plain: standard typical normal ordinary regular usual common new old good great quality ergonomic comfortable realistic
-plain: detailed basic scandinavian victorian industrial traditional brushed polished matte matt glossy shiny painted
-plain: lacquered big large huge small little tiny mini narrow short slim compact shallow quite very really just
+both: either_way to_either_direction both_ways
+beside row: side_by_side in_a_row next_to_each_other
+beside column: in_a_column one_above_the_other on_top_of_each_other
+lines row: row rows
+lines column: column columns
+det: a an the its their this these those my your our his her any some
+be: is are be been being was were can could may might must should would will do does to also then so
+and: and or but plus
+use: hold holds store stores storing keep keeps fit fits take takes seat seats serve serves use used match matches suit
+use: suits remind reminds look looks work works need needs protect protects carries carry stay stays play plays fits_in
+filler: please i we you like want need make build create generate give show draw design get me us hello hi hey thanks
+filler: let would wants wanted object item thing model piece side hand end ends kind type sort itself own u one_of
+filler: approximately roughly approx exactly about around whole throughout part parts each_other altogether total s
+filler: while mounted attached fixed connected placed located positioned arranged painted finished coloured colored
+filler: color colour made built there here lines stacked set in_total fitted independently have design looking ones one
+filler: middle center edge line corner done shaped this just only very really quite rather too
+plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant stylish fancy cute
+plain: beautiful nice cool robust strong durable solid professional practical simple plain
+plain: standard typical normal regular usual common new old good great quality ergonomic comfortable realistic
+plain: detailed basic scandinavian victorian industrial traditional brushed polished matte matt glossy
+plain: cast wrought toy lacquered big large huge small little tiny mini narrow short slim compact shallow low
 plain: portable electric electrical household kitchen garden office bathroom bedroom living room hallway workshop hotel
-plain: home commercial domestic outdoor indoor style styled wall identical matching freestanding free mounted
-plain: independently endlessly freely smoothly easily continuously gently slowly quickly separately individually
-plain: daughter son wife husband mother father grandmother child kid friend vertical vertically horizontal
-plain: horizontally upright dark light
+plain: home commercial domestic outdoor indoor style styled wall identical matching freestanding free
+plain: garage school hospital restaurant camping travel patio laundry nursery studio shop lounge hall
+plain: separate individual independent vertical horizontal upright dark light bright pale deep extra
+form: round ring ball bar cup loop wire mesh star bow dome barrel t d u l x hook
 part: door drawer flap knob button lever caster wheel crank rotor vent lock handle lid tray shelf hook gauge needle dial
 part: switch pedal seat leg arm blade window light display screen ladder mirror basket rail bell finger joint cover
 part: hatch panel key roller fan gear pulley spring rope bulb stand foot mast boom bucket propeller wing sail visor
 part: brake clamp jaw spout tap valve plunger piston rod nozzle hose cable plug socket cap drum turntable platform ramp
-part: step armrest headrest footrest backrest handlebar tailgate hood trunk bonnet gripper camera antenna grip
+part: step armrest headrest footrest backrest handlebar tailgate hood trunk bonnet gripper camera antenna grip pull
+part: holder rack frame base body pole post chain latch axle bin slot hinge
 """
 """What words mean, and the value of that."""
+ROLES = pairs(
+    "sign ,|having h|and &|dims x|range r|symmetric r|quantity q|number #|relative R|without W|relation L|lines =|"
+    "beside T|both B|endless e|det d|color c|material c|side s|ordinal s|dimension D|refers P|state S|motion m|"
+    "degree g|stative t|stroke k|limit p|place p|like Y|be b|where v|plain f|part w|use u|form a|filler _"
+)
+"""Class of a word -> the letter that stands for it in patterns; the first one counts."""
 OF_SOME = re.compile(
-    r"\b(?:(?:of|except) (?:which|them|these|those)|other|another|except|only|instead|alternat\w+|respectively|others"
-    r"|every (?:second|other)|(?:first|second|third|fourth|fifth|sixth|last|topmost|lowest) from|half of|cant|cannot"
-    r"|dont|doesnt|isnt|not|never"
-    r"|(?:the|while) (?:\w+ )?(?:left|right|top|bottom|first|second|third|fourth|last|"
-    r"middle|upper|lower|front|rear|back) (?:one|half))\b"
+    r"\b(?:(?:of|except) (?:which|them|these|those)|others?|another|except|only|instead|alternat\w+|respectively"
+    r"|every (?:second|other)|half of|cant|cannot|dont|doesnt|isnt|not|never|(?:the|while) middle (?:one|\w+)"
+    r"|one (?:\w+ )+?and one (?:\w+)$|from the (?:bottom|left|right))\b"
 )
 """Clauses about some of the parts, which are not read."""
+OPINION = re.compile(r"\w{3,}(?:y|ous|ful|ish|ive|some|esque|(?<!gon)al)$")
+"""Adjectives that say what somebody thinks of a thing."""
+CLAIMS = re.compile(
+    r"old|well|free|heavy|high|good|\w+-(?:style|sized?|friendly|looking|made|grade|duty|quality|"
+    r"fashioned|proof|resistant|width|themed|inspired|coloured|colored)$"
+)
 _AMBIGUOUS = words_of("none yes no top bottom left right side plain one two four off fixed beside below within")
 _NUMBER = r"\d+(?:[.,]\d+)?"
 _UNIT = "|".join(sorted((re.escape(word) for word in (*UNITS, *ANGLES) if word != "in"), key=len, reverse=True))
 _TIMES = rf" ?(?:x|×|by) ?{_NUMBER}(?: ?(?:{_UNIT})(?![a-z]))?"
 _TOKENS = re.compile(
     rf"(?P<dims>{_NUMBER}(?: ?(?:{_UNIT}))?{_TIMES}(?:{_TIMES})?)(?![a-z0-9])"
-    rf"|(?P<range>(?:(?:from|between) )?[-−]?{_NUMBER} ?(?:{_UNIT})? ?(?:up |down )?(?:to|and|\.\.) ?"
+    rf"|(?P<range>(?:(?:from|between) )?[-−]?{_NUMBER} ?(?:{_UNIT})? ?(?:(?:up |down |back )?(?:to|and|\.\.)|–|-) ?"
     rf"\+?[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
-    rf"|(?P<symmetric>(?:±|\+/-|plus or minus) ?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
-    rf"|(?P<quantity>[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])|(?P<number>{_NUMBER})|(?P<word>[a-z]+)|(?P<sign>[^\sa-z0-9])"
+    rf"|(?P<symmetric>(?:±|\+/-|plus or minus|plus minus) ?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
+    rf"|(?P<quantity>[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])|(?P<number>{_NUMBER}(?![a-z]))"
+    rf"|(?P<word>[a-z0-9]*[a-z][a-z0-9]*~?)|(?P<sign>[^\sa-z0-9])"
 )
 _BARE = re.compile(
     rf"(?<![\dx×.-] )\b{_NUMBER}(?= (?:wide|deep|high|tall|long|broad|thick)\b)"
@@ -140,18 +168,35 @@ _BARE = re.compile(
 )
 """A size or a range without a unit."""
 _PURPOSE = re.compile(
-    r"\b(?:for|to (?:store|keep|hold|put|carry|hang|serve|sort|collect|display)) [^,;.:]*?"
-    r"(?=$|[,;.:]| with | and | that | having )"
+    r"\b(?:for|so (?:that|you|i|we)|suitable for|because|to (?:store|keep|hold|put|carry|hang|serve|sort|collect|"
+    r"display|make|help|sit|use|match|go with|suit)) [^,;.:]*?(?=$|[,;.:]| with | that | having | whose | which )"
 )
-_SPELT = (
-    (r"['’](?:s|m|d|ll|re|ve)?\b|(?<=s)['’]", ""),
-    (r"(?<=\w)-(?=[a-z])|(?<=[a-z])-(?=\w)", " "),
+_SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    (r"[’‘′]", "'"),
+    (r"[“”″]|''", '"'),
+    (
+        rf"({_NUMBER}) ?(?:ft|foot|feet|') ?({_NUMBER}) ?(?:inch(?:es)?|in\b|\")",
+        lambda found: f"{12 * float(found[1]) + float(found[2]):g} inch",
+    ),
+    (r"(?<=\d)'(?!\w)", " ft"),
+    (r"'(?:s|m|d|ll|re|ve)?\b|(?<=s)'", ""),
+    (r"(?<=\d) ?[–—-] ?(?=\d)", " to "),
+    (r"(?<=\d)-(?=[a-z])|(?<=[a-z])-(?=\d)", " "),
+    (r"(?<=[a-z])-(?=[a-z])", "~ "),
     (r"\bw/ ?", "with "),
     ("&", " and "),
     (r"(?<=\d),(?=\d{3}\b)", ""),
+    (r"\bhalf an? (?=(?:met|foot|inch))", "0.5 "),
+    (
+        r"\b(\w+) and a half (?=(?:met|f[oe]{2}t|inch))",
+        lambda found: f"{WORDS.get(found[1], {}).get('number', found[1])}.5 ",
+    ),
+    (r"\ba (?=(?:metre|meter|foot) (?:and|wide|high|tall|long|deep|across|in|by)\b)", "1 "),
+    (r"(\d+) and a half\b", r"\1.5"),
+    (r"(\d+ ?\w+) (?:off|above|from) the (?:floor|ground)", r", \1 high,"),
     (r"^for (?:my|our|the) \w+,? (?=an? )", ""),
-    (r"^((?:an? |the )?)built in ", r"\1"),
-    (r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick)\b)", " inch "),
+    (r"^((?:an? |the )?)built~? in ", r"\1"),
+    (r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick|across)\b)", " inch "),
 )
 """Spelling, and how it is read."""
 
@@ -162,14 +207,15 @@ def _meanings() -> dict[str, dict[str, Any]]:
     said += [(word, "material", name) for name, item in MATERIALS.items() for word in (name, *item.words.split())]
     for line in _TABLE.strip().splitlines():
         (what, _, value), words = (head := line.split(": "))[0].partition(" "), head[1].split()
-        said += [(word.replace("_", " "), what, value or word) for word in words]
+        said += [(word.replace("_", " ").strip(), what, value or word) for word in words]
     for word, what, meaning in said:
         found.setdefault(word, {})[what] = meaning
     return found
 
 
-WORDS = _meanings()
+WORDS: dict[str, dict[str, Any]] = _meanings()
 _NUMBERS = {word: int(said["number"]) for word, said in WORDS.items() if "number" in said}
+_PARTS = "|".join(word for word, said in WORDS.items() if "part" in said)
 
 
 @dataclass(frozen=True)
@@ -178,6 +224,8 @@ class Unit:
 
     text: str
     means: Mapping[str, Any]
+    is_tied: bool = False
+    """A hyphen joins it to the next."""
 
 
 def read_units(text: str) -> list[Unit]:
@@ -187,28 +235,37 @@ def read_units(text: str) -> list[Unit]:
         InputError: It is empty, too long, no English, or asks for a negative number.
     """
     plain = " ".join(text.lower().split())
-    for pattern, instead in _SPELT[:4]:
-        plain = re.sub(pattern, instead, plain)
     _refuse_unreadable(text, plain)
-    for pattern, instead in _SPELT[4:]:
+    for pattern, instead in _SPELT:
         plain = re.sub(pattern, instead, plain)
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
+    plain = re.sub(rf"\b([a-z]+) and ([a-z]+) ({_PARTS})s\b", _shared, plain)
     plain = _BARE.sub(lambda found: _with_unit(found, plain), plain)
     for purpose in _PURPOSE.findall(plain):
-        asks = {what for word in key_of(purpose) for what in WORDS.get(word, ())} & {"part", "motion", "number"}
+        asks = {what for word in key_of(purpose) for what in WORDS.get(word, ())} & {"motion", "number"}
         plain = plain if asks or re.search(r"\d", purpose) else plain.replace(purpose, " ")
     raw = [(str(found.lastgroup), found[0]) for found in _TOKENS.finditer(plain)]
     units, k = list[Unit](), 0
     while k < len(raw):
         kind, word = raw[k]
-        for length in (3, 2, 1):
-            said = " ".join(item[1] for item in raw[k : k + length])
+        for length in (4, 3, 2, 1):
+            said = " ".join(item[1].rstrip("~") for item in raw[k : k + length])
             if length == 1 or said in WORDS:
                 break
         means = WORDS.get(said, {}) if kind == "word" else {kind: said}
-        units.append(Unit(said, {"word": word, **means} if kind == "word" else means))
+        tied = raw[min(k + length, len(raw)) - 1][1].endswith("~")
+        units.append(Unit(said, {"word": word, **means} if kind == "word" else means, tied))
         k += length
     return units
+
+
+def _shared(found: re.Match[str]) -> str:
+    """Give each of two kinds of parts its noun: hour and minute hands."""
+    first, second, noun = found.groups()
+    known = words_of("number color material part plain motion having filler")
+    if known & {what for word in key_of([first, second]) for what in WORDS.get(word, ())}:
+        return found[0]
+    return f"{first} {noun} and {second} {noun}"
 
 
 def _with_unit(found: re.Match[str], text: str) -> str:
@@ -223,7 +280,7 @@ def _with_unit(found: re.Match[str], text: str) -> str:
 
 def _refuse_unreadable(text: str, plain: str) -> None:
     letters = [letter for letter in plain if letter.isalpha()]
-    shown = repr(text if len(text) < 80 else f"{text[:77]}...")
+    shown = repr(text[:80])
     if not plain.strip():
         raise InputError("The text is empty. Describe an object, e.g. 'a cabinet with two doors above three drawers'.")
     if not letters or sum(letter.isascii() for letter in letters) < 0.8 * len(letters):

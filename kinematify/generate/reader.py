@@ -1,17 +1,27 @@
 """English into a typed request: the kind, sizes, counts, looks, sides, rows, ranges and openings; the rest is listed.
 
-Every word belongs to one thing that is named, or to the whole. What is not read of a thing is listed with it, and not
-again where the object does not have it. What was read is measured on the object.
+A sentence is read phrase by phrase: a noun with what stands before it, then what is said of it. Every word is one of
+these: the kind, a field of the request (which is measured on the object), a word of the kind's own names and
+description, a word that asks for nothing by its place in the grammar, or it is listed as not read.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import InputError
-from kinematify.generate.delivery import BuildResult, count_parameter, deliver, moves_so, names_called, stands_in
-from kinematify.generate.english import OF_SOME, WORDS, Unit, read_units, values_of, vocabulary
+from kinematify.generate.delivery import (
+    BuildResult,
+    are_round,
+    count_parameter,
+    deliver,
+    moves_so,
+    names_called,
+    stands_in,
+)
+from kinematify.generate.english import CLAIMS, OF_SOME, OPINION, ROLES, WORDS, Unit, read_units, values_of, vocabulary
 from kinematify.generate.kind_search import (
     key_of,
     kind_called,
@@ -32,12 +42,40 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.parameter import Parameter
     from kinematify.generate.request import Request
 
-_SURELY = words_of("hinge joint front bottom back axle motor bearing floor")
-"""Nouns of which nobody can tell that an object has none."""
-_WHERE = words_of("panel base body frame floor wall ground edge corner surface")
+_WHERE = words_of("panel base body frame floor wall ground edge corner surface angle end")
 """Nouns of places, which are no parts where something is only on them."""
 _STILL = words_of("shelf compartment top back front bottom side rack frame")
 """Nouns that are open, and do not stand open."""
+_NAMED = words_of("tilt pan lift swing")
+"""Motions that are nouns behind an article."""
+_NOUN = (
+    r"[dP_]{0,2}(?:~+[^,]|~|[#qxDcsfamSgnNZwHu_]|(?<=c)&(?=c))*?"
+    r"(?:N(?![vpioqrLwnNZ])|H(?![piodsvqracmfSnZwN~])|[nZ](?![wnNZ])|w(?![acfswnNZ~])"
+    r"|(?:(?<=[dcm])|(?<=~v))s(?![acfswnNZ~#]))"
+)
+_PHRASES = {
+    "sign": "[,&]",
+    "clause": "R[bPf_&]*",
+    "rows": "(?P<at>i?)(?P<lines>[d#]?)=(?:o(?P<per>#))?|T",
+    "having": "[hW]",
+    "relation": "L",
+    "both_sides": "[pi]P_",
+    "place_side": "[pi][dP]{0,2}(?P<side>s)(?:_*=|_*(?![acfswnNZ~]))",
+    "made": f"Y[^,h#q]*|[pio][pif_]*(?:(?=[qrx])|(?=c)(?!{_NOUN}))",
+    "noun": f"[pio]?{_NOUN}|[pio]",
+    "hinge": "H[pdP_i]*(?P<edge>s)_*",
+    "verb": "(?P<words>[mMNHSgtke](?:[mMNSHgtkevf_d]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
+    "(?:[piodfvb_]*(?P<far>[qr])(?!D)(?:B|ok|k|(?P<then>[Sv]+))?)?",
+    "length": "D[bpiodf_,]{0,4}(?P<long>q)",
+    "attribute": "[cqxs]|~+.",
+    "each": "P",
+    "rest": ".[wa]*",
+}
+"""What a sentence is made of, in the letters of `ROLES`; the first that fits is read by the method of its name."""
+_PHRASE = "|".join(f"(?P<{name}>{pattern})" for name, pattern in _PHRASES.items())
+_LIMIT = ".*?(?=[,hWRLbPpiY]|(?<!#)o|(?<!g)S(?=[^,]))"
+"""Where the name of the whole ends at the latest."""
+Match = re.Match[str]
 _OPPOSITE = {"left": "right", "right": "left"}
 
 
@@ -64,22 +102,20 @@ class _Thing:
     """What is said of the parts of one name, or of the whole."""
 
     facts: dict[str, Any] = field(default_factory=dict)
-    """Of `PartRequest`; besides, `grid` and, while they wait for a noun, `article`, `without`, `pick` and `bare`."""
+    """Of `PartRequest`; besides, `grid`, `each_side`, `article` and `bare`, a length that is not named."""
     said: list[str] = field(default_factory=list)
     """Words."""
     odd: list[str] = field(default_factory=list)
     """Words that are not read."""
-    grid: tuple[int, int] | None = None
-    """Columns and rows in which they are to stand."""
     is_guess: bool = False
     """It may be a part; words not read where the object has none."""
-    is_counted: bool = True
-    """Its number is said by more than an article."""
+    grid: tuple[int, int] | None = None
+    """Columns and rows in which they are to stand, 0 of what nobody said how many."""
 
 
 @dataclass(kw_only=True)
 class Sentence:
-    """A sentence that is read from left to right: what is said waits for a noun, else it goes to the last one."""
+    """A sentence that is read from left to right; what is said belongs to the last noun, or to the whole."""
 
     text: str
     units: list[Unit]
@@ -87,14 +123,19 @@ class Sentence:
     family: Kind = field(init=False)
     words: Mapping[str, Mapping[str, Any]] = field(init=False)
     """Of the kind."""
+    own: set[str] = field(init=False)
+    """Words of the names and of the description of the kind."""
     start: int = 0
     """Where the name begins."""
     stop: int = 0
     """Where it ends."""
+    roles: str = ""
+    """One letter per unit, see `_role`."""
     values: dict[str, Any] = field(default_factory=dict)
     things: dict[str, _Thing] = field(default_factory=dict)
     """By noun; the whole by an empty one."""
-    waiting: _Thing = field(default_factory=_Thing)
+    ahead: dict[str, Any] = field(default_factory=dict)
+    """Facts of the next noun: a row of knobs, no doors."""
     faults: list[str] = field(default_factory=list)
     """Values that the kind cannot have."""
     notes: list[str] = field(default_factory=list)
@@ -103,9 +144,18 @@ class Sentence:
     copies: int = 1
     subject: str = ""
     """Noun of the last part; empty for the whole."""
+    several: str = ""
+    """The last noun of several, of which *the left one* is one."""
+    is_plural: bool = False
+    """The last noun is."""
+    is_hinged: bool = False
+    """In a clause that says where a hinge is."""
+    is_shown: bool = False
+    """In a clause such as *with the lid open*."""
     fresh: bool = False
-    """Nothing but attributes since the last comma."""
-    relation: tuple[str, int] | None = None
+    """Nothing but attributes since the last comma, which are of the whole."""
+    each: int = 1
+    """How many there are of what each has such."""
     instead_of: str = ""
 
     # ---- the kind --------------------------------------------------------------------------------------------------
@@ -117,18 +167,18 @@ class Sentence:
             InputError: No kind is named.
         """
         words = [lemma(unit.text) if "word" in unit.means else "" for unit in self.units]
-        empty = [not word or self._is(k, "filler plain") for k, word in enumerate(words)]
-        first = empty.index(False) if False in empty else 0
-        limit = next((k for k in range(first + 1, len(words)) if self._ends_name(k)), len(words))
+        self._assign_roles({})
+        first = _match("[^wacsmSNMntDuTB~]*", self.roles, 0).end() % len(self.roles)
+        limit = _match(_LIMIT, self.roles, first + 1).end()
         found = self._named(words, limit)
         for k in range(limit) if found is None else ():
-            other = None if empty[k] else repaired(words[k], words_of_names())
+            other = repaired(words[k], words_of_names()) if self.roles[k] in "wa" else None
             if other is not None:
                 self.notes.append(f"Read {self._text(k)!r} as {other!r}.")
                 words[k] = other
                 found = self._named(words, limit)
         if found is None:
-            head = " ".join(unit.text for unit in self.units[first:limit]) or self.text
+            head = self._text(first, limit) or self.text
             near = nearest_kinds(head)
             if not nearest:
                 raise InputError(
@@ -139,27 +189,45 @@ class Sentence:
             self.notes.append(f"There is no kind {head!r}: built is the nearest, a {near[0].title}.")
             self.instead_of, found = head, (near[0], 0, limit)
         self.family, self.start, self.stop = found
-        self.words = vocabulary(self.family)
+        self._assign_roles(vocabulary(self.family))
+        known = [*self.family.words, self.family.about, *sum(self.family.part_words.values(), ())]
+        known += [word for item in self.family.parameters for word in item.nouns]
+        self.own = {key for word in known for key in key_of(word) if "side" not in WORDS.get(key, ())}
+
+    def _assign_roles(self, words: Mapping[str, Mapping[str, Any]]) -> None:
+        self.words, self.roles = words, ""
+        for k in range(len(self.units)):
+            self.roles += self._role(k)
+        self.roles += ",,,,"
+
+    def _role(self, k: int) -> str:
+        """One letter that says what a unit can be, which `_NOUN` and its like are written in."""
+        word, means, before = self._text(k), self.units[k].means, self.roles[-1:] or ","
+        own = self.words.get(lemma(word), {}).keys() & {"part", "length"} and "side" not in means
+        role = next((role for what, role in ROLES.items() if what in means), "")
+        if self.units[k].is_tied:
+            role = "~"
+        elif word.startswith("hinge"):
+            role = "H"
+        elif before in ("dwh" if word in _NAMED else "sDfc" if word in ("one", "ones") else ""):
+            role = "n"  # its tilt, the left one
+        elif own:
+            role = "N" if "motion" in means else "n" if word == lemma(word) else "Z"
+        elif word in ("in", "of"):
+            role = word[0]
+        elif role == "D" and "place" in means:  # across
+            role = "D" if before == "q" else "p"
+        elif role == "m" and word.endswith("s") and word[:-1] in WORDS:
+            role = "M"
+        return role or ("v" if word.endswith("ly") else "a" if re.search("[^e]ed$|ing$", word) else "w")
 
     def _named(self, words: list[str], limit: int) -> tuple[Kind, int, int] | None:
         for start in range(limit):
             for end in range(min(start + 6, len(words)), start, -1):
                 family = kind_called(words[start:end]) if all(words[start:end]) else None
-                after = next((k for k in range(end, limit) if not words[k] or self._is_noun(k)), limit)
-                if family is not None and (after == limit or not words[after]):
+                if family is not None and "w" not in re.split("[,#qxr]", self.roles[end:limit])[0]:
                     return family, start, end
         return None
-
-    def _ends_name(self, k: int) -> bool:
-        if self._is(k, "state") and not self._is(k - 1, "degree") and self._text(k + 1) not in ("", "top"):
-            return True
-        counted = self._text(k) == "of" and not self._is(k - 1, "number")
-        return counted or self._is(k, "sign having without refers relation ends")
-
-    def _is_noun(self, k: int) -> bool:
-        """True if a word goes on with a name, so that another thing is named: a laptop bag."""
-        known = "state degree dimension color material motion side number filler plain"
-        return not self._is(k, known) and self._text(k) != "toy" and not self._text(k).endswith("ed")
 
     # ---- from left to right ----------------------------------------------------------------------------------------
 
@@ -169,508 +237,446 @@ class Sentence:
         Raises:
             InputError: They contradict each other.
         """
-        k = 0
-        while k < self.start:
-            k = self._one(k)
-        count, head = self.waiting.facts.pop("count", 1), lemma(self._text(self.stop - 1))
-        if not {"single", "double", "twin", "dual", "triple"} & set(self.waiting.said):
+        head, before = lemma(self._text(self.stop - 1)), _Thing()
+        self._describe(self.roles.rfind("d", 0, self.start) + 1, self.start, before)
+        count, name = before.facts.pop("count", 1), self._text(self.stop - 1)
+        if count > 1 and _counted(self.family, head):
+            self._add(head, _Thing(facts={"count": count}))
+        elif name != head and not ("pair" in before.said and any(word.endswith(name) for word in self.family.words)):
             self.copies = max(count, 1)
-        elif _counted(self.family, head):
-            self.things[head] = _Thing(facts={"count": count})
-        else:
-            self.waiting.odd += self.waiting.said
-        self._settle("")
-        self.subject, self.fresh, k = "", False, self.stop
+        elif "pair" not in before.said and count > 1:
+            before.odd += before.said
+        self._give("", before)
+        k = self.stop
         while k < len(self.units):
-            clause = next((j for j in range(k + 1, len(self.units)) if self._text(j) in ",;."), len(self.units))
-            text = " ".join(unit.text for unit in self.units[k:clause]).lstrip(",; ")
-            if (k == self.stop or self._text(k) in ",;.") and OF_SOME.search(text):
-                self._settle()
-                self._thing("").odd.append(text)
-                k = clause
-            else:
-                k = self._one(k)
-        self._settle()
+            found = _match(_PHRASE, self.roles, k)
+            k = getattr(self, f"_{found.lastgroup}")(found) or found.end()
         self._lay_out()
-
-    def _one(self, k: int) -> int:
-        """Read what begins at a unit; returns where to go on."""
-        readers = (
-            self._sign, self._measure, self._number, self._known, self._has_such, self._look, self._having,
-            self._state, self._dimension, self._relate, self._side, self._filler,
-        )  # fmt: skip
-        return next((after for read in readers if (after := read(k))), 0) or self._unknown(k)
-
-    def _is(self, k: int, classes: str) -> bool:
-        return 0 <= k < len(self.units) and not self.units[k].means.keys().isdisjoint(classes.split())
 
     def _mean(self, k: int, what: str) -> Any:
         return self.units[k].means.get(what) if 0 <= k < len(self.units) else None
 
-    def _text(self, k: int) -> str:
-        return self.units[k].text if 0 <= k < len(self.units) else ""
+    def _text(self, k: int, end: int | None = None) -> str:
+        return " ".join(unit.text for unit in self.units[max(k, 0) : k + 1 if end is None else end]) if k >= 0 else ""
 
     def _thing(self, noun: str) -> _Thing:
         return self.things.setdefault(noun, _Thing())
 
-    def _wait(self, k: int, what: str, value: Any) -> None:
-        facts, words = self.waiting.facts, self._text(k)
-        self.waiting.said.append(words)
-        if facts.setdefault(what, value) != value and value != "move":
-            self.waiting.odd.append(words)
+    def _odd(self, words: str, noun: str = "") -> None:
+        self._thing(noun).odd.append(words)
 
-    def _sign(self, k: int) -> int:
-        word = self._mean(k, "sign")
-        if word and word in ",;:.()":
-            self._settle()
-            self.fresh = True
-        elif word and word not in "\"'?!":
-            self.waiting.odd.append(word)
-        return k + 1 if word else 0
+    @property
+    def _owner(self) -> str:
+        return "" if self.fresh else self.subject
 
-    def _number(self, k: int) -> int:
-        said, after = self._mean(k, "number"), self._text(k + 1)
-        count = self.things[self.subject].facts.get("count", 0) if self.subject else 0
-        if line := self._mean(k, "beside"):
-            self._stand(line, self._text(k))
-            return k + 1
-        if said is None or (self._text(k) == "one" and after in ("", "of", "side", "end")):
-            return 0
-        value = float(said.replace(",", "."))
-        if self._is(k + 1, "lines"):
-            if value and count and count % value == 0:
-                columns = int(value) if after.startswith("column") else int(count / value)
-                self.things[self.subject].facts["grid"] = (columns, count // columns)
-            else:
-                self.waiting.odd.append(f"{self._text(k)} {after}")
-            return k + 2
-        if value != int(value) or "count" in self.waiting.facts or self._text(k) == "zero":
-            self.waiting.odd.append(self._text(k))
-        else:
-            self._wait(k, "count", int(value))
-            if self._text(k - 1) == "of" and (line := self._text(k - 2)) in ("row", "column"):
-                self.waiting.facts["grid"] = _grid(line, int(value))
-        return k + 1 + (after == "of")
+    def _sign(self, found: Match) -> int:
+        k, end = found.start(), self.roles.index(",", found.end())
+        if found[0] == ",":
+            self.fresh, self.is_shown, self.is_hinged, self.each = True, False, False, 1
+            if OF_SOME.search(self._text(k + 1, end)):
+                self._odd(self._text(k + 1, end))
+                return end
+        return k + 1
 
-    def _stand(self, line: str, words: str) -> None:
-        """Set the last parts in one row or column."""
-        facts = self._thing(self.subject).facts
-        if count := facts.get("count"):
-            facts["grid"] = _grid(line, count)
-        else:
-            self.waiting.odd.append(words)
+    def _clause(self, found: Match) -> int:
+        """Read how a relative clause begins; one about use asks for nothing, one that is not known is listed."""
+        verb = found.end()
+        end = _match("[^,hR]*", self.roles, verb).end()
+        self.is_shown = False
+        if self.roles[verb] in "wa" or (self.roles[verb] == "u" and set(self.roles[verb:end]) & set("#q")):
+            self._odd(self._text(verb, end), self.subject)
+        if self.is_plural and self.roles[verb] == "M":
+            self.subject = ""  # a fan with three blades that turns
+        self.fresh = False
+        return end if self.roles[verb] in "uwa" else verb
+
+    def _rows(self, found: Match) -> None:
+        """Read rows and columns, of the last part or of the next."""
+        beside, is_next = self._mean(found.start(), "beside"), not found["at"] or not self.subject
+        line = beside or self._mean(self.roles.index("=", found.start()), "lines")
+        lines, per = (int(self._mean(found.start(name), "number") or 0) for name in ("lines", "per"))
+        facts, lines = self.ahead if is_next and not beside else self._thing(self.subject).facts, max(lines, 1)
+        if per:
+            facts.setdefault("count", lines * per)
+        each, rest = divmod(facts.get("count", 0), lines)
+        facts["grid"] = (each, lines) if line == "row" else (lines, each)
+        if rest:
+            self._odd(self._text(found.start(), found.end()))
+
+    def _having(self, found: Match) -> None:
+        k = found.start()
+        if found[0] == "W":
+            self.ahead = {"count": 0} if self._span(k + 1) else {}
+            if not self.ahead:
+                self._odd(self._text(k, k + 2))
+        self.is_shown = self._text(k) == "with" and self._text(k + 1) in ("the", "its", "their")
+        self.fresh = False
 
     # ---- nouns -----------------------------------------------------------------------------------------------------
 
-    def _known(self, k: int) -> int:
-        """Read a word of the kind, or a noun of a part."""
-        for after in (k + 4, k + 3, k + 2, k + 1):
-            words = " ".join(unit.text for unit in self.units[k:after])
+    def _span(self, k: int) -> tuple[int, int] | None:
+        """Find where the head of a noun phrase begins and ends; None if none begins here."""
+        if (found := re.compile(_NOUN).match(self.roles, k)) is None:
+            return None
+        end = found.end()
+        for start in range(max(k, end - 4), end):
+            if " ".join(map(lemma, self._text(start, end).split())) in self.words:
+                return start, end
+        return end - 1 - (end - 1 > k and self.roles[end - 2] in "wn"), end
+
+    def _part(self, k: int, head: int, end: int, *, is_place: bool = False) -> str:
+        """Keep what is said before a noun, of the part that it means; returns what it is called."""
+        words = self._text(head, end)
+        key = " ".join(key_of(words))
+        thing = _Thing()
+        is_choice = self._describe(k, end, thing, head=head)
+        facts, ahead, self.ahead = thing.facts, self.ahead, {}
+        meanings = self.words.get(key, {})
+        pick, article = facts.pop("pick", ""), facts.pop("article", False) and "count" not in facts
+        thing.is_guess = is_place or is_choice or "part" not in meanings
+        if words in ("one", "ones") and self.several:
+            key, thing.is_guess = self.several, False
+            facts.pop("count", None)
+        if is_place and (key in _WHERE or not (meanings or key in self.things)):
+            return key
+        if self._mean(end, "stroke") and "bare" in facts:  # a 10 cm jaw opening
+            facts |= {"range": (0.0, facts.pop("bare")), "motion": "slide"}
+        elif "bare" in facts:
+            facts.setdefault("size", {}).setdefault("length", facts.pop("bare"))
+        if self.each > 1 and not is_place:
+            facts["count"] = facts.get("count", 1) * self.each
+        facts |= ahead
+        is_plural = words != lemma(words)
+        noun = f"{pick} {key}".strip()
+        if pick and facts.get("count") == 1:
+            del facts["count"]
+        elif article and noun in self.things:
+            if (facts | self.things[noun].facts).keys() - {"count"}:  # a glass door above a wooden door
+                thing.odd.append(words)
+            facts["count"] = self.things[noun].facts.pop("count", 1) + 1
+        elif "count" not in facts and not (pick or noun in self.things or is_choice or is_place):
+            counted = _counted(self.family, noun)
+            several = {"at_least" if counted is None or counted.default else "count": 2}
+            facts |= several if is_plural else {"count": 1} if article else {}
+        if key in _STILL:
+            facts.pop("open", None)
+        thing.said = [] if is_place or (is_choice and not facts) else [self._text(k + (self.roles[k] == "d"), end)]
+        noun = self._add(noun, thing)
+        if not is_place:
+            self.subject, self.is_plural, self.fresh = noun, is_plural, False
+            self.several = key if is_plural else self.several
+        return noun
+
+    def _describe(self, k: int, end: int, thing: _Thing, head: int | None = None) -> bool:
+        """Read what stands before a noun, or before the name of the whole; returns if the noun is a choice of the kind.
+
+        Args:
+            k: Where it begins.
+            end: Where the noun ends.
+            thing: Gets what is said.
+            head: Where the noun begins; none before the name.
+        """
+        stop, is_choice = end if head is None else head, False
+        while k < end:
+            last = next(j for j in range(k, end) if not self.units[j].is_tied or j == end - 1)
+            if chosen := self._choice(k, end, thing, head):
+                is_choice |= chosen > stop
+                k = chosen
+            elif k >= stop:
+                break
+            elif last > k and last < stop:
+                self._tied(k, last, thing)
+                k = last + 1
+            else:
+                k += self._modifier(k, stop, thing, is_part=head is not None)
+        return is_choice
+
+    def _modifier(self, k: int, stop: int, thing: _Thing, *, is_part: bool) -> int:  # noqa: PLR0912 - one per class
+        """Read one unit before a noun; returns how many were read."""
+        facts, word, behind, role = thing.facts, self._text(k), self._text(k + 1), self.roles[k]
+        thing.said.append(word)
+        look = "color" if self._mean(k, "color") else "material"
+        if role == "#":
+            number = float(self._mean(k, "number").replace(",", "."))
+            one = {behind, self._text(stop)} == set(map(lemma, (behind, self._text(stop)))) and number > 1
+            if one and k + 1 < stop and self.roles[k + 1] == "n":  # a six drawer dresser
+                self._add(behind, _Thing(facts={"count": int(number)}))
+                return 2
+            if one and k + 1 < stop and self.roles[k + 1] in "wa" and is_part:  # a three spoke handle
+                thing.odd.append(f"{word} {behind}")
+                return 2
+            if number != int(number) or "count" in facts:
+                thing.odd.append(word)
+            else:
+                facts["count"] = int(number)
+        elif role in "qx":
+            return self._size(k, thing)
+        elif role == "c" and not (word == "paper" and is_part):
+            if facts.setdefault(look, self._mean(k, look)) != self._mean(k, look):
+                thing.odd.append(word)
+        elif role == "s":
+            facts["pick"] = word
+        elif word in ("a", "an"):
+            facts["article"] = True
+        elif role == "S":
+            facts["open"] = float(self._mean(k, "state"))
+        elif role in "mMH" and not (is_part and self._mean(k, "name")):
+            if is_part:
+                facts.setdefault("motion", self._mean(k, "motion"))
+            else:
+                self.moves.append((self._mean(k, "motion"), word))
+        elif not self._asks_nothing(k, stop, is_part=is_part):
+            thing.odd.append(word)
+        return 1
+
+    def _asks_nothing(self, k: int, stop: int, *, is_part: bool) -> bool:
+        """True of a word before a noun that is a name of the kind's, an opinion, or what the part is for."""
+        word = self._text(k)
+        bare = re.search("[^e]ed$|a[lr]$", word) or self._mean(k, "form")
+        known = self.roles[k] not in "wan" or lemma(word) in self.own or OPINION.match(word) is not None
+        return known or (not bare and ((is_part and k == stop - 1) or self.roles[k + 1] == "c"))
+
+    def _tied(self, k: int, last: int, thing: _Thing) -> None:
+        """Read words that hyphens join: orange-handled, drop-down, half-open."""
+        word, facts = self._text(last), dict[str, Any]()
+        thing.said.append("-".join(self._text(k, last + 1).split()))
+        for j in range(k, last + 1):
+            for what in ("color", "material", "motion", "degree", "number"):
+                if what in self.units[j].means:
+                    facts.setdefault(what, self._mean(j, what))
+        facts |= {"count": int(facts.pop("number"))} if "number" in facts else {}
+        stems = (word.removesuffix("ed"), word.removesuffix("d"), word[:-3], word)
+        noun = next((stem for stem in map(lemma, stems) if "part" in self.words.get(stem, {})), "")
+        if noun and facts and "motion" not in facts:
+            self._add(noun, _Thing(facts=facts))
+        elif "degree" in facts and self._mean(last, "state"):
+            thing.facts["open"] = float(facts["degree"])
+        elif facts and "count" not in facts and ("motion" in facts or self._mean(last, "filler")):
+            thing.facts |= facts
+        elif not (CLAIMS.match(thing.said[-1]) or set(self._text(k, last + 1).split()) <= self.own):
+            thing.odd.append(thing.said[-1])
+
+    def _choice(self, k: int, end: int, thing: _Thing, head: int | None) -> int:
+        """Read a value of a parameter of the kind; returns where it ends, or 0."""
+        for after in range(end, k, -1):
+            words = self._text(k, after)
             meanings = self.words.get(" ".join(map(lemma, words.split())), {})
-            if meanings and after <= len(self.units) and not (after == k + 1 and self._is_adverb(k, meanings)):
-                readers = (self._length, self._choice, self._compound, self._part)
-                return next((then for read in readers if (then := read(k, after, words, meanings))), 0)
+            if "choice" not in meanings:
+                continue
+            name, value = meanings["choice"]
+            behind = lemma(self._text(after)) if after < end else ""
+            own = self.words.get(behind, {}).get("part") == "own" or behind in name
+            is_counted = "count" in thing.facts or words != lemma(words)
+            if (behind and not own and head is not None) or (meanings.get("part") and not behind and is_counted):
+                continue
+            if self.ahead.get("count") == 0:
+                value = "no" if value == "yes" else "none"
+                self.ahead = {}
+            self._take(name, value, words)
+            return after
         return 0
 
-    def _length(self, k: int, after: int, words: str, meanings: Mapping[str, Any]) -> int:
-        name, bare = meanings.get("length"), self.waiting.facts.get("bare", ())
-        j = next((j for j in range(after, after + 4) if not self._is(j, "filler sign")), after)
-        if not name or not (bare or self._is(j, "quantity")):
-            return 0
-        self._take(name, values_of(self._text(j))[0][0] if self._is(j, "quantity") else bare[0], words)
-        if self._is(j, "quantity"):
-            return j + 1
-        del self.waiting.facts["bare"]
-        return after
-
-    def _choice(self, k: int, after: int, words: str, meanings: Mapping[str, Any]) -> int:
-        """Read a value of a parameter, such as the word before a noun that is the kind's own."""
-        waits, behind = self.waiting.facts, lemma(self._text(after))
-        name, value = meanings.get("choice", ("", ""))
-        own = self.words.get(behind, {}).get("part") or behind in name
-        other = not own if self._is_part(after) else self._is(after, "word") and not self._is_read(after)
-        if not name or (other and k > self.stop and ("part" not in meanings or self._is_part(after))):
-            return 0
-        if meanings.get("part") and ("count" in waits or words != lemma(words)):
-            return 0
-        if words.startswith("hinge") and self._is(after, "side place"):
-            return 0
-        if waits.pop("without", False):
-            value = "no" if value == "yes" else "none"
-        self._take(name, value, words)
-        if self._is_part(after):
-            return after
-        noun, first = " ".join(key_of(words)), key_of(words)[0]
-        if count := waits.pop("count", 0):  # a three finger gripper
-            counted = first if _counted(self.family, first) else noun
-            self._add(counted, words, _Thing(facts={"count": count}), is_guess=counted == noun)
-        for look in ("color", "material") if name == "handle" else ():
-            if look in waits:
-                self.values[f"handle_{look}"] = waits.pop(look)
-        self._settle()
-        self.subject, self.fresh = noun, False
-        self.things.setdefault(noun, _Thing(is_guess=True))
-        return after
-
-    def _compound(self, k: int, after: int, words: str, meanings: Mapping[str, Any]) -> int:
-        """Read a noun before another one, which it only describes."""
-        del k, meanings
-        if not self._is_part(after) or words != lemma(words) or self._is(after, "motion"):
-            return 0
-        one = lemma(self._text(after)) == self._text(after) and words not in self.things
-        if one and self.waiting.facts.get("count", 1) > 1:  # a two blade rotor
-            self._add(" ".join(key_of(words)), words, _Thing(facts={"count": self.waiting.facts.pop("count")}))
-        else:
-            self.waiting.odd.append(words)
-        return after
-
-    def _part(self, k: int, after: int, words: str, meanings: Mapping[str, Any]) -> int:
-        if not meanings.keys() & {"part", "length"}:
-            return 0
-        if self._is(after, "stroke") and "bare" in self.waiting.facts:  # a 10 cm jaw opening
-            value, si = self.waiting.facts.pop("bare")
-            self.waiting.facts["range"] = (0.0, value, si)
-            if self.fresh and self.subject:
-                self._settle(self.subject)
-                return after
-        self._noun(k, words, is_guess="part" not in meanings)
-        return after
-
-    def _is_part(self, k: int) -> bool:
-        return "part" in self.words.get(lemma(self._text(k)), {})
-
-    def _is_adverb(self, k: int, meanings: Mapping[str, Any]) -> bool:
-        """True for a verb, for a word such as back behind one, and for a side behind a preposition."""
-        before = self._text(k - 1)
-        several = before != lemma(before) and self._is_part(k - 1) and "choice" not in meanings
-        verb = self._is(k - 1, "verbal") or several
-        return (
-            (self._is(k, "motion") and verb)
-            or (self._is(k, "where") and self._is(k - 1, "motion state"))
-            or (self._is(k, "side") and self._is_placed(k))
-        )
-
-    def _is_placed(self, k: int) -> bool:
-        places = ("on", "at", "along", "across", "in" if self._is(k + 1, "lines") else "on")
-        return self._text(k - 1) in places or (
-            self._text(k - 1) in ("the", "its", "their", "either", "each", "both") and self._text(k - 2) in places
-        )
-
-    def _has_such(self, k: int) -> int:
-        """Read a word such as four-bladed or orange-handled."""
-        word = self._text(k)
-        stems = (word[:-2], word[:-1], word[:-3]) if word.endswith("ed") and not self._is(k, "state material") else ()
-        noun = next((lemma(stem) for stem in stems if "part" in self.words.get(lemma(stem), {})), "")
-        if not noun or not self.waiting.facts.keys() & {"count", "color", "material"}:
-            return 0
-        self.waiting.facts.pop("article", None)
-        self._add(noun, word)
-        return k + 1
-
-    def _noun(self, k: int, words: str, *, is_guess: bool) -> None:
-        """Read a noun, which may only say where something else is: on the panel."""
-        the = self._text(k - 1) in ("the", "its", "their") and "count" not in self.waiting.facts
-        is_place = the and self._is(k - 2, "place where") and bool(self.subject)
-        if is_place:
-            self._settle(self.subject)
-        said, self.waiting, before_name = self.waiting, _Thing(), k < self.start
-        waits, noun = said.facts, " ".join(key_of(words))
-        pick, without = waits.pop("pick", ""), waits.pop("without", False)
-        article = waits.pop("article", False) and "count" not in waits
-        if without and noun in _SURELY:
-            self._thing("").odd.append(f"without {words}")
-        if (is_place and noun in _WHERE) or (without and noun in _SURELY):
-            return
-        if before_name and "count" in waits:  # the looks before it are of the whole
-            self.waiting.facts = {name: waits.pop(name) for name in ("color", "material") if name in waits}
-        elif before_name and not waits:
-            self.waiting.odd = [*said.odd, words]
-            return
-        noun = f"{pick} {noun}".strip()
-        if without:
-            waits["count"] = 0
-        elif waits.get("count") == 1 and pick:
-            del waits["count"]
-        elif "count" not in waits and not (pick or noun in self.things or before_name):
-            waits |= self._implied(noun, words, article=article)
-        if noun in _STILL:
-            waits.pop("open", None)
-        self._add(noun, words, said, is_guess=is_guess or is_place)
-        self.things[noun].is_counted &= not article
-        if self.relation is not None:
-            self._rows(self.relation[0], noun, self.relation[1])
-            self.relation = None
-        if not before_name and not is_place:
-            self.subject, self.fresh = noun, False
-
-    def _implied(self, noun: str, words: str, *, article: bool) -> dict[str, int]:
-        """How many parts a noun without a number means."""
-        if lemma(words) == words:
-            return {"count": 1} if article else {}
-        counted = _counted(self.family, noun)
-        return {"at_least" if counted is None or counted.default else "count": 2}
-
-    def _add(self, noun: str, words: str, waiting: _Thing | None = None, *, is_guess: bool = False) -> None:
-        """Give what waits to a part; what it has otherwise is not read."""
-        if waiting is None:
-            waiting, self.waiting = self.waiting, _Thing()
-        own = self.things.setdefault(noun, _Thing(is_guess=is_guess))
-        facts, phrase = waiting.facts, " ".join(filter(None, [*waiting.said, words]))
-        own.said.append(phrase)
-        own.odd += waiting.odd
-        if "bare" in facts:
-            facts.setdefault("size", {}).setdefault("length", facts.pop("bare")[0])
-        if not own.is_counted and "count" in facts:
-            own.is_counted = True
-            own.facts.pop("count", None)
+    def _add(self, noun: str, thing: _Thing) -> str:
+        """Give what is said to a part; what it has otherwise is not read. Returns the noun."""
+        own = self.things.setdefault(noun, _Thing(is_guess=thing.is_guess))
+        facts, phrase = thing.facts, " ".join(thing.said)
         count = own.facts.get("count", facts.get("count"))
         if count != facts.get("count", count):
-            if (facts | own.facts).keys() & {"side", "color", "material"} or " per " in self.text:
+            if self._cell(noun) and ((facts | own.facts).keys() & {"side", "grid", "row"}):
+                return self._add(f"{noun} ", thing)  # another group of the same
+            if (facts | own.facts).keys() & {"side", "color", "material"}:
                 own.odd.append(phrase)
-                return
+                return noun
             raise InputError(f"The text says {count} and {facts['count']} of {noun!r}. Say one.")
+        own.said.append(phrase)
+        own.odd += thing.odd
         for name, value in facts.items():
             if name == "size":
                 own.facts["size"] = {**own.facts.get("size", {}), **value}
-            elif own.facts.setdefault(name, value) != value and "move" not in (own.facts[name], value):
-                own.odd.append(phrase)
+            elif own.facts.get(name) == "move":
+                own.facts[name] = value
+            elif own.facts.setdefault(name, value) != value and value != "move":
+                own.odd.append(phrase or str(value))
+        return noun
 
     # ---- attributes ------------------------------------------------------------------------------------------------
 
-    def _look(self, k: int) -> int:
-        is_noun = self._text(k) in ("mirror", "iron", "paper") and not self._noun_follows(k + 1)
-        for what in ("color", "material"):
-            if (value := self._mean(k, what)) and not is_noun:
-                self._wait(k, what, value)
-                return k + 1
-        return 0
+    def _give(self, owner: str, thing: _Thing) -> None:
+        """Give attributes to a part, or to the whole."""
+        if owner:
+            self._add(owner, thing)
+            return
+        self._thing("").odd += thing.odd
+        for what, value in thing.facts.items():
+            self._whole(what, value, " ".join(thing.said))
 
-    def _having(self, k: int) -> int:
-        if not self._is(k, "having without"):
-            return 0
-        self._settle()
-        if self._is(k, "without"):
-            self.waiting.facts["without"] = True
-        else:
-            self.fresh = False
-        return k + 1
+    def _fact(self, found: Match, owner: str | None = None, **facts: Any) -> None:
+        said = [self._text(found.start(), found.end())]
+        self._give(self._owner if owner is None else owner, _Thing(facts=facts, said=said))
 
-    def _state(self, k: int) -> int:
-        """Read a state or a motion."""
-        state, motion, step = self._mean(k, "state"), self._mean(k, "motion"), k + 1
-        if self._is(k, "degree") and (self._is(step, "state") or self._is(k - 1, "state")):
-            value = 0.0 if self._mean(step, "state") == "0" else float(self._mean(k, "degree"))
-            if not self._then_measured(step):
-                self.waiting.facts["open"] = value
-                self.waiting.said.append(self._text(k))
-            return step + self._is(step, "state") + self._is(step + 1, "where")
-        if state and self._is(k - 1, "verbal"):
-            self._wait(k, "motion", "move")
-        elif state and not (self._text(k) == "open" and self._text(k - 1) == "can"):
-            if not self._then_measured(step):
-                self._wait(k, "open", float(state))
-        elif self._names_motion(k):
-            self._noun(k, self._text(k), is_guess=True)
-        elif motion:
-            place = 0
-            if self._text(k).startswith("hinge"):
-                place = next((j for j in range(step, step + 3) if self._is(j, "side")), 0)
-                place *= all(self._is(j, "place filler refers") for j in range(step, place)) and (
-                    place > step or self._text(place) in _OPPOSITE or self._text(place + 1) in ("side", "edge")
-                )
-            if place:
-                self._wait(place, "hinge", self._mean(place, "side"))
-                return place + 1 + (self._text(place + 1) in ("side", "edge"))
-            self._wait(k, "motion", motion)
-        else:
-            return 0
-        return step + self._is(step, "where")
-
-    def _names_motion(self, k: int) -> bool:
-        before = self._text(k - 1) in ("whose", "its", "the", "a")
-        return before and self._text(k) in ("tilt", "pan", "lift", "swing") and not self._is(k + 1, "where")
-
-    def _dimension(self, k: int) -> int:
-        name, waits = self._mean(k, "dimension"), self.waiting.facts
-        if not name:
-            return 0
-        if "bare" in waits:
-            waits.setdefault("size", {})[name] = waits.pop("bare")[0]
-            return k + 1
-        for j in range(k + 1, k + 4):
-            if self._is(j, "quantity") and (value := values_of(self._text(j))[0])[1] == "m":
-                waits.setdefault("size", {})[name] = value[0]
-                self.waiting.said.append(self._text(j))
-                return j + 1
-            if self._text(j) not in ("of", "is", ":", "=", "a", "about", "around"):
-                break
-        return k + 1
-
-    def _measure(self, k: int) -> int:
-        """Read a size, a range or an opening."""
-        if not self._is(k, "dims range symmetric quantity"):
-            return 0
-        numbers = values_of(self._text(k))
+    def _size(self, k: int, thing: _Thing) -> int:
+        """Read a size and the dimension behind it; returns how many units were read."""
+        numbers, sizes = values_of(self._text(k)), thing.facts.setdefault("size", {})
         value, si = numbers[-1]
-        step = k + 1
-        if self._is(k, "dims"):
+        if self.roles[k] == "x":
             if not si:
-                rows, columns = int(numbers[0][0]), int(value)
-                self._wait(k, "count", rows * columns)
-                self.waiting.facts["grid"] = (columns, rows)
-                return step + (self._text(step) == "grid") + (self._text(k + 2) == "of")
+                thing.facts |= {"count": int(numbers[0][0] * value), "grid": (int(value), int(numbers[0][0]))}
+                return 1 + (self._text(k + 1) == "grid") + (self._text(k + 2) == "of")
             names = ["width", "depth", "height"]
             usual = {item.name: float(item.default) for item in self.family.parameters if item.name in names}
             if len(numbers) == 2 and "depth" not in usual:
                 names.remove("depth")
-                if (usual.get("width", 0.0) < usual.get("height", 0.0)) is (numbers[0][0] > value):
+                if (usual.get("width", 0.0) < usual.get("height", 0.0)) is (numbers[0][0] > 1.5 * value):
                     names.reverse()  # a door of 2 m by 0.8 m
-            sizes = dict(zip(names, (number for number, _ in numbers), strict=False))
-            self.waiting.facts.setdefault("size", {}).update(sizes)
-            return step
-        both, verb = self._is(step, "both"), self._verb(k)
-        after = step + (self._text(step) == "of")
-        if self._is(k, "range"):
-            low = numbers[0][0]
-            self._wait(k, "range", (0.0, value - low, si) if si == "m" and low > 0.0 else (low, value, si))
-        elif self._is(k, "symmetric") or both:
-            self._wait(k, "range", (-value, value, si))
-        elif verb == "state":
-            self._wait(k, "open", (value, si))
-        elif (verb == "motion" and not self._is(step, "dimension")) or self._is(after, "stroke"):
-            self._wait(k, "range", (min(value, 0.0), max(value, 0.0), si))
-            return after + self._is(after, "stroke")
+            sizes.update(zip(names, (number for number, _ in numbers), strict=False))
+            return 1
+        step = k + 1 + (self.roles[k + 1 : k + 3] in ("iD", "oD"))
+        if si == "m" and (name := self._mean(step, "dimension")):
+            sizes[name] = value
+            return step + 1 - k
+        if si == "m":
+            thing.facts["bare"] = value
         else:
-            self.waiting.said.append(self._text(k))
-            if si == "m":
-                self.waiting.facts["bare"] = (value, si)
-            else:
-                self.waiting.odd.append(self._text(k))
-            return step + (self._text(step) in ("in", "of") and self._is(step + 1, "dimension"))
-        return step + both
+            thing.odd.append(self._text(k))
+        return 1
 
-    def _verb(self, k: int) -> str:
-        """What a quantity says: a ``state``, a ``motion`` or neither, by the nearest verb before it in the clause."""
-        for j in range(k - 1, max(k - 7, self.stop - 1), -1):
-            verbal = self._is(j, "motion state")
-            if not self._is(j, "word") or self._is(j, "having") or (not verbal and lemma(self._text(j)) in self.words):
-                return ""
-            can = any(self._is(i, "asks") for i in range(j - 3, j))
-            if self._is(j, "state") and not (can and (self._text(j) == "open" or self._text(j - 1) == "be")):
-                return "state"
-            if verbal or self._is(j, "stroke"):
-                return "motion"
-        return ""
+    def _length(self, found: Match) -> None:
+        k = found.start("long")
+        self._fact(found, size={self._mean(found.start(), "dimension"): values_of(self._text(k))[0][0]})
 
-    def _then_measured(self, k: int) -> bool:
-        j = next((j for j in range(k, len(self.units)) if not self._is(j, "filler where")), len(self.units))
-        return self._is(j, "quantity") and not self._is(j + 1, "dimension")
+    def _attribute(self, found: Match) -> int:
+        """Read a look, a size or a side that stands alone."""
+        k, thing, owner = found.start(), _Thing(), self._owner
+        if found[0] == "q" and "motion" in WORDS.get(owner.split(" ")[-1], ()):
+            return self._range(found, k, owner)  # a gas lift of 10 cm
+        if found[0][0] == "~":
+            self._tied(k, found.end() - 1, thing)
+        else:
+            k += self._modifier(k, k, thing, is_part=False)
+        side = WORDS.get(thing.facts.pop("pick", ""), {}).get("side")
+        thing.facts |= {"side": side} if side and owner else {}
+        if owner and "bare" in thing.facts:
+            thing.facts["size"]["length"] = thing.facts.pop("bare")
+        self._give(owner, thing)
+        return max(k, found.end())
+
+    def _range(self, found: Match, k: int, owner: str, how: str = "move") -> int:
+        """Give a range, with the motion that its unit means; it is not read where the text says another motion."""
+        numbers, words = values_of(self._text(k)), [self._text(found.start(), found.end())]
+        (low, _), (value, si) = numbers[0], numbers[-1]
+        low = -value if self._mean(k, "symmetric") or "B" in found[0] else low if self.roles[k] == "r" else 0.0
+        if si == "m" and low > 0.0:
+            low, value = 0.0, value - low
+        usual = "slide" if si == "m" else "hinge"
+        owner = owner or usual
+        for other in (self._thing(owner).facts.get("motion", usual), usual):
+            how = other if how == "move" else how
+        if (how in ("slide", "lift")) is (si == "m"):
+            self._add(owner, _Thing(facts={"range": tuple(sorted((low, value))), "motion": how}, said=words))
+        else:
+            self._add(owner, _Thing(facts={"motion": how}, odd=[f"{owner} {words[0]}"]))
+        return found.end()
+
+    def _hinge(self, found: Match) -> None:
+        k, self.is_hinged = found.start(), True
+        owner = self._owner if self._text(k) == "hinged" or self.roles[k - 1] not in ",&h" else ""
+        self._fact(found, owner, hinge=self._mean(found.start("edge"), "side"))
+
+    def _verb(self, found: Match) -> int:
+        """Read how something moves, how far, or how it stands."""
+        how, share, stands, far, k = "", None, self.is_shown, found.start("far"), found.start()
+        owner = self._owner if self.roles[k] in "rq" or self._text(k).endswith("s") else self.subject
+        for j in range(*found.span("words")):
+            can, role = self.roles[j - 1] in "bR" and self._text(j - 1) not in ("is", "are"), self.roles[j]
+            goes = self._text(j) == "open" and (can or (self.is_plural and not stands and far > 0))
+            if role == "S" and not goes and (not can or self._mean(j, "state") == "0"):
+                share, stands = float(self._mean(j, "state")) if share is None else share, True
+            elif role == "g" and not how:
+                share = float(self._mean(j, "degree"))
+            elif role in "mMNHS":
+                how = how or str(self._mean(j, "motion") or "move")
+            stands |= role == "t"
+            how = "spin" if role == "e" else how
+        if far > 0 and (stands or found["then"]) and self.roles[far] == "q" and not how:
+            self._fact(found, owner, open=values_of(self._text(far))[0])
+        elif far > 0:
+            self._range(found, far, owner, how or "move")
+        elif how:
+            self._fact(found, owner, motion=how)
+        elif stands and share is not None:
+            self._fact(found, owner, open=share)
+        return found.end()
 
     # ---- places ----------------------------------------------------------------------------------------------------
 
-    def _side(self, k: int) -> int:
-        side, word, before, after = self._mean(k, "side"), self._text(k), self._text(k - 1), self._text(k + 1)
-        if self._is(k, "ordinal") or (side and not self._is_placed(k) and self._noun_follows(k + 1)):
-            self._wait(k, "pick", word)
-            return k + 1
-        if not side:
-            return 0
-        if word in _OPPOSITE and after == "of" and self.subject:
-            self._wait(k, "side", word)
-            self._settle(self.subject)
-            self.waiting.facts["side"] = _OPPOSITE[word]
-        elif word in _OPPOSITE and after == "hinged":
-            self._wait(k, "hinge", word)
-            return k + 2
-        elif word == "underneath" or self._is_placed(k):
-            leads = self.fresh or not self.subject
-            step = k + 1 + (after in ("side", "hand", "end", "edge", "row")) + (self._text(k + 2) == "side")
-            if after == "row" and not leads:
-                self._stand(after, "row")
-            if leads and not self._noun_follows(step):
-                self.waiting.odd.append(f"on the {word}")
-                return step
-            self._wait(k, "side", side)
-            if not leads:
-                self._settle(self.subject)
-            return step
-        elif "article" in self.waiting.facts or self._is(k - 1, "having refers") or before == "the":
-            self._noun(k, word, is_guess=True)
-        elif not self._is(k - 1, "motion"):
-            self.waiting.odd.append(word)
-        return k + 1
+    def _made(self, found: Match) -> None:
+        """Pass over what leads to a size or a material, and what it is for or like."""
 
-    def _noun_follows(self, k: int) -> bool:
-        for j in range(k, k + 4):
-            if self._is_part(j):
-                return True
-            if not (self._is(j, "color material number motion plain") or self._text(j) in ("a", "an")):
-                return j == k and self._is(j, "word") and not self._is_read(j)
-        return False
+    def _both_sides(self, found: Match) -> None:
+        facts = self._thing(self.subject).facts
+        facts["each_side"] = True
+        if "count" in facts and self._text(found.start() + 1) != "both":
+            facts["count"] *= 2
 
-    def _relate(self, k: int) -> int:
+    def _noun(self, found: Match) -> None:
+        """Read a part, or where something is."""
+        in_place = self.roles[found.start()] in "pio"
+        k = found.start() + in_place
+        if span := self._span(k):
+            last, the = self._text(span[1] - 1), self._text(k) in ("the", "its", "their")
+            is_place = bool(self._owner) and (the or (last == lemma(last) and self.roles[k] not in "d#"))
+            self._part(k, *span, is_place=in_place and (is_place or lemma(last) in _WHERE))
+
+    def _place_side(self, found: Match) -> int:
+        word, side, end = self._text(found.start("side")), self._mean(found.start("side"), "side"), found.end()
+        if self.fresh or not self.subject:
+            if self._span(end + (self.roles[end] == "h")):
+                self.ahead["side"] = side
+            else:
+                self._odd(f"on the {word}")
+        elif self.is_hinged and self.subject.startswith(tuple(_OPPOSITE)):
+            self._fact(found, hinge=side)  # the left one hinged on the left, the right one on the right
+        elif self.subject == "hinge":
+            del self.things[self.subject]
+            self._whole("hinge", side, word)
+        else:
+            count = self._thing(self.subject).facts.get("count", 0)
+            facts: dict[str, Any] = {"grid": (count, 1)} if found[0][-1] == "=" and count else {}
+            self._fact(found, None, side=side, **facts)
+        return end
+
+    def _relation(self, found: Match) -> int:
         """Read that one part is above another, and the like."""
-        if not (relation := self._mean(k, "relation")):
-            return 0
-        others = [noun for noun in self.things if noun not in ("", self.subject)]
-        back = self._is(k + 1, "refers sign") or self._text(k + 1) in ("", "and")
-        if not self.subject or (back and not others):
-            self.waiting.odd.append(self._text(k))
-            return k + 1
-        self._settle(self.subject)
-        if back:
-            self._rows(self.subject, others[-1], int(relation))
-        else:
-            self.relation = (self.subject, int(relation))
-        return k + 1 + self._is(k + 1, "refers")
+        k, subject, other = found.start(), self.subject, ""
+        step, span, end = int(self._mean(k, "relation")), self._span(k + 1), k + 1 + (self.roles[k + 1] == "P")
+        if span and subject and self.roles[k + 1] != "P":
+            is_place = self._text(k + 1) in ("the", "its", "their")
+            other = self._part(k + 1, *span, is_place=is_place)
+            self.subject, end = subject if is_place else self.subject, span[1]
+        elif subject:
+            other = next((noun for noun in reversed(self.things) if noun not in ("", subject)), "")
+        if other in self.things and other != subject:  # above (1) or below (-1) it
+            mine, its = (self._thing(noun).facts for noun in (subject, other))
+            its.setdefault("row", mine.setdefault("row", its.get("row", 10 + step) - step) + step)
+        elif other in ("", subject):
+            self._odd(self._text(k))
+        return end
 
-    def _rows(self, one: str, other: str, step: int) -> None:
-        """Put one part above (1) or below (-1) another."""
-        mine, its = (self.things[noun].facts for noun in (one, other))
-        its.setdefault("row", mine.setdefault("row", its.get("row", 10 + step) - step) + step)
+    def _each(self, found: Match) -> None:
+        self.fresh = False
+        if self.subject.endswith(self.several):
+            self.subject = self.several or self.subject
+        self.each = self._thing(self.subject).facts.get("count", 1) if self.roles[found.end()] == "h" else 1
 
-    def _filler(self, k: int) -> int:
-        word = self._text(k)
-        if self._is(k, "filler refers stroke lines"):
-            if word in ("whose", "which", "that") or (word == "and" and not self._is(k + 1, "color material where")):
-                self._settle()
-            if word in ("a", "an"):
-                self.waiting.facts.setdefault("article", True)
-            self.fresh = self.fresh and (word == "all" or not self._is(k, "refers"))
-        elif self._is(k, "where both"):
-            moving = any(self._is(j, "motion state where") for j in range(k - 5, k))
-            shape = word == "round" and self._is(k + 1, "color material part")
-            self.waiting.odd += [] if moving and not shape else [word]
-        elif not self._is(k, "plain"):
-            return 0
+    def _rest(self, found: Match) -> int | None:
+        """Pass over what asks for nothing, and list what is not known."""
+        k = found.start()
+        if found[0][0] in "#B" or not self._asks_nothing(k, k, is_part=False):
+            self._odd(self._text(k, found.end()), self._owner)
+            return None
+        if self.is_shown and self._text(k) in ("up", "out"):
+            self._give(self._owner, _Thing(facts={"open": 1.0}))
         return k + 1
-
-    def _unknown(self, k: int) -> int:
-        """Words that are not known: a noun of a part if one is expected, which the object tells."""
-        last = next((j for j in range(k + 1, len(self.units)) if not self._is(j, "word") or self._is_read(j)), None)
-        last = len(self.units) if last is None else last
-        if k < self.start:
-            last = min(last, self.start)
-        words = " ".join(unit.text for unit in self.units[k:last])
-        begins = self._text(k - 1) in ("and", "whose", "its", "the", ",") or self._is(k - 1, "having")
-        expected = begins or self.waiting.facts.keys() - {"color", "material"}
-        behind = last + 2 - self._is_part(last + 1)  # hour and minute hands
-        paired = self._text(last) == "and" and self._is_part(behind) and not self._is_read(last + 1)
-        paired = paired and "count" not in self.waiting.facts
-        follows = self._is_part(last) or paired or (self._is(last, "color material") and self._noun_follows(last + 1))
-        counted = f"{self._text(k - 1)}-{self._text(k)}"
-        if follows and self._is(k - 1, "number") and counted in self.text.lower():  # a three-spoke handle
-            self.waiting.facts.pop("count", None)
-            words = f"{self._text(k - 1)} {words}"
-        if expected and not follows and not self._is(k - 1, "verbal") and k >= self.stop:
-            self._noun(k, words, is_guess=True)
-        else:
-            self.waiting.odd.append(words)
-        return last
-
-    def _is_read(self, k: int) -> bool:
-        known = "filler having refers where relation color material motion state side number plain dimension"
-        return self._is(k, known) or lemma(self._text(k)) in self.words
 
     # ---- settling --------------------------------------------------------------------------------------------------
 
@@ -682,30 +688,12 @@ class Sentence:
             self.faults.append(f"{words}: {str(error).rstrip('.')}")
             return
         if self.values.setdefault(name, value) != value:
-            self.waiting.odd.append(words)
-
-    def _settle(self, owner: str | None = None) -> None:
-        """Give what waits to a part, or to the whole."""
-        owner = ("" if self.fresh else self.subject) if owner is None else owner
-        facts, said = self.waiting.facts, " ".join(self.waiting.said)
-        facts.pop("article", None)
-        if facts.keys() & {"without", "count", "pick"} or ("bare" in facts and self.waiting.odd):
-            self.waiting = _Thing(odd=[*self.waiting.odd, said or "without"])
-        elif "range" in facts and not owner:
-            facts.setdefault("motion", "hinge" if facts["range"][2] == "rad" else "slide")
-            owner = facts["motion"].replace("move", "hinge" if facts["range"][2] == "rad" else "slide")
-        if owner:
-            self._add(owner, "")
-        else:
-            waiting, self.waiting = self.waiting, _Thing()
-            self._thing("").odd += waiting.odd
-            for what, value in waiting.facts.items():
-                self._whole(what, value, said)
+            self._odd(words)
 
     def _whole(self, what: str, value: Any, said: str) -> None:
         known = {item.name for item in self.family.parameters}
         if what == "bare":
-            what, value = "size", {"width" if "width" in known else "length": value[0]}
+            what, value = "size", {"width" if "width" in known else "length": value}
         if what == "size":
             sizes = self._thing("").facts
             for name, size in value.items():
@@ -719,11 +707,11 @@ class Sentence:
         elif what == "hinge" and "hinge_side" in known:
             self._take("hinge_side", value, said)
         elif what == "hinge":
-            self._add("door", said, _Thing(facts={what: value}))
+            self._add("door", _Thing(facts={what: value}, said=[said]))
         elif what == "motion":
             self.moves.append((value, said))
-        else:
-            self._thing("").odd.append(said)
+        elif what != "article":
+            self._odd(said)
 
     # ---- layouts of fronts -----------------------------------------------------------------------------------------
 
@@ -737,25 +725,24 @@ class Sentence:
         """Write the layout of a front whose fields are placed; fields that are not named are left out."""
         counted = {lemma(item.name): item for item in self.family.parameters if isinstance(item.default, int)}
         fields = [(cell, thing.facts) for noun, thing in self.things.items() if (cell := self._cell(noun))]
-        if any(cell != "shelf" and facts.get("count") != 0 for cell, facts in fields):
-            for cell, item in counted.items():
-                if cell in CELLS and cell not in dict(fields) and any("count" in facts for _, facts in fields):
-                    self.values.setdefault(item.name, 0)
+        if any(cell != "shelf" and facts.get("count") for cell, facts in fields):
+            for cell in (CELLS & counted.keys()) - dict(fields).keys():
+                self.values.setdefault(counted[cell].name, 0)
         sides = (*_OPPOSITE, "top", "bottom")
-        placed = any(facts.keys() & {"row", "grid"} or facts.get("side") in sides for _, facts in fields)
+        placed = any(facts.keys() & {"row", "grid", "each_side"} or facts.get("side") in sides for _, facts in fields)
         if not placed or "layout" in self.values:
             return
         columns: dict[str, list[tuple[int, str]]] = {}
         for cell, facts in fields:
-            count = facts.get("count", counted[cell].default or 2)
+            side, both = facts.get("side", ""), facts.get("each_side", False)
+            count = facts.get("count", counted[cell].default or 2) // (1 + both)
             text = f"{count}*{cell}" if count != 1 else cell
             if grid := facts.get("grid"):
                 row = " | ".join([cell] * grid[0])
                 text = " / ".join([f"({row})" if grid[0] > 1 else cell] * grid[1])
-            side = facts.get("side", "")
             level = {"top": 0, "bottom": 20}.get(side, facts.get("row", 10))
-            if count:
-                columns.setdefault(side if side in _OPPOSITE else "", []).append((level, text))
+            for column in _OPPOSITE if both else [side if side in _OPPOSITE else ""] * bool(count):
+                columns.setdefault(column, []).append((level, text))
             if cell == "shelf":
                 for name in ("row", "side"):
                     facts.pop(name, None)
@@ -773,24 +760,27 @@ class Sentence:
         Raises:
             InputError: It contradicts itself.
         """
+        for noun in [noun for noun in self.things if noun.endswith(" ")]:
+            first, more = self.things[noun.rstrip()], self.things.pop(noun)
+            kept = {name: first.facts[name] for name in first.facts.keys() - {"row", "side", "grid"}}
+            first.facts = {**kept, "count": first.facts["count"] + more.facts["count"]}
+            first.odd += more.odd
         rows = sorted({thing.facts["row"] for thing in self.things.values() if "row" in thing.facts})
         sizes, parts = self._thing("").facts, {}
         for noun, thing in self.things.items():
             facts = thing.facts
             if facts.get("count") == 0 and facts.keys() - {"count", "at_least", "row"}:
                 raise InputError(f"The text says that there is no {noun}, and what it is like. Say one.")
-            thing.grid = facts.pop("grid", None)
-            row = {"row": rows.index(facts["row"]) + 1} if "row" in facts else {}
-            if "range" in facts:
-                *facts["range"], si = facts["range"]
-                if facts.get("motion", "move") == "move":
-                    facts["motion"] = "slide" if si == "m" else "hinge"
-                elif (facts["motion"] in ("slide", "lift")) is not (si == "m"):
-                    del facts["range"]
-                    thing.odd.append(" ".join(filter(None, thing.said)))
+            if (name := self.words.get(noun, {}).get("length")) and "length" in facts.get("size", {}):
+                self._take(name, facts.pop("size")["length"], noun)
+                facts.pop("count", None)
+                thing.said = []
+            thing.grid, _ = facts.pop("grid", None), facts.pop("each_side", None)
+            if "row" in facts:
+                facts["row"] = rows.index(facts["row"]) + 1
             if noun and (facts or thing.said):  # not a choice of which nothing else is said
-                parts[noun] = {**facts, **row}
-        named = key_of([unit.text for unit in self.units[self.start : self.stop]])
+                parts[noun] = facts
+        named = key_of(self._text(self.start, self.stop))
         usual = next((said for word, said in self.family.usual.items() if key_of(word) == named), {})
         stated = {*sizes, *(item.name for noun in parts if (item := _counted(self.family, noun)))}
         values = {
@@ -817,16 +807,17 @@ class Sentence:
         unread = [said for how, said in self.moves if not some.get(how, all)(moves_so(joint, how) for joint in joints)]
         for noun, thing in self.things.items():
             if noun in lost:
-                unread.append(" ".join(filter(None, dict.fromkeys([*thing.odd, *thing.said]))))
+                said = " ".join(filter(None, thing.said))
+                unread.append(" ".join([*(word for word in thing.odd if word not in said), said]).strip())
             elif noun not in made.missing:
                 unread += thing.odd
                 names = names_called(self.family, made.blueprint, noun)
-                if thing.grid and not stands_in(made.blueprint, names, *thing.grid):
-                    listed.append("{}: columns and rows are not {} and {}".format(noun, *thing.grid))
-        known = (*self.family.words, *(part.name.replace("_", " ") for part in made.blueprint.parts))
-        known += tuple(word for item in self.family.parameters for word in item.nouns)
-        known += tuple(word for said in self.family.part_words.values() for word in said)
-        own = {key for name in known for key in key_of(name)} - {word for word in WORDS if "side" in WORDS[word]}
+                if "round" in unread and are_round(made.blueprint, names or [made.blueprint.parts[0].name]):
+                    unread.remove("round")
+                columns, rows = (lines or len(names) for lines in thing.grid or (1, 1))
+                if thing.grid and not stands_in(made.blueprint, names, columns, rows):
+                    listed.append(f"{noun}: columns and rows are not {columns} and {rows}")
+        own = self.own | {key for part in made.blueprint.parts for key in key_of(part.name.replace("_", " "))}
         return replace(
             made,
             differences=(*self.faults, *listed),
@@ -836,11 +827,13 @@ class Sentence:
         )
 
 
+def _match(pattern: str, text: str, k: int) -> Match:
+    found = re.compile(pattern).match(text, k)
+    assert found, "a pattern that fits everything"
+    return found
+
+
 def _counted(family: Kind, noun: str) -> Parameter | None:
     """The parameter that counts parts of a noun, where it may have several values."""
     item = count_parameter(family, noun)
     return item if item and item.bounds and item.bounds[0] < item.bounds[1] else None
-
-
-def _grid(line: str, count: int) -> tuple[int, int]:
-    return (count, 1) if line == "row" else (1, count)

@@ -82,6 +82,8 @@ class Kind:
     """How people call its parts, besides the names that they have without their numbers."""
     like: str = ""
     """The kind that it is another way to build, which the fit alone knows; empty of a kind of its own."""
+    about: str = ""
+    """What it has, in words."""
     module: str = ""
     """The theme that it is listed under: the module of `kinematify.generate.kinds` with its function."""
     draw: Callable[..., None] | None = None
@@ -320,6 +322,7 @@ def kind(
             usual={word: what for group, what in (usual or {}).items() for word in phrases(group)},
             part_words={part: phrases(said) for part, said in (part_words or {}).items()},
             like=like,
+            about=draw.__doc__ or "",
             module=draw.__module__.rpartition(".")[2],
             draw=draw if styles and not carves else None,
         )
