@@ -20,12 +20,13 @@ from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.manipulation.plan_request import Hold
+from kinematify.manipulation.robot_place import object_box
 from kinematify.model.collision import collides_as_it_is
 from kinematify.model.masses import prepared_inertials
 from kinematify.model.output import urdf_of
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
-from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import pose_at, transformed
 from kinematify.simulation.engines import engines_that_hold
 
@@ -215,11 +216,6 @@ def find_target(articulated_object: ArticulatedObject, joint: str) -> Target:
     )
 
 
-def held_links(articulated_object: ArticulatedObject, target: Target) -> tuple[str, ...]:
-    """Links of the rigid body that the joint moves."""
-    return next(group.links for group in rigid_groups(articulated_object.declared) if target.link in group.links)
-
-
 def open_end(travel: Travel) -> float:
     """Value at the end of the range that is farther from rest; a quarter of a turn where there is no end [rad or m]."""
     return travel.far_end if travel.limited else travel.rest + 0.5 * np.pi
@@ -287,10 +283,7 @@ def _standing(scene: Scene) -> FloatArray:
             for shape in body.shapes)
         for row in poses
     ]  # fmt: skip
-    corners = np.concatenate(
-        [transformed(s, T) for body, T in zip(scene.bodies, poses[0], strict=True) for s in body.shapes]
-    )
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    low, high = object_box(scene)
     sinks = min(lowest) < low[2] - 0.01 * float(high[2] - low[2])
     return pose_at([*(-0.5 * (low + high)[:2]), -min(lowest) + (_PLINTH if sinks else 0.0)])
 

@@ -10,12 +10,14 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.articulated_object import AUTO, ENGINES, find_target, held_links, shared_articulated_object
-from kinematify.envs.env_picture import Piece, Renderer, ViewerWindow, has_screen, require_screen
+from kinematify.envs.articulated_object import AUTO, ENGINES, find_target, shared_articulated_object
 from kinematify.envs.goal import Goal
 from kinematify.envs.joint_dynamics import draw, drawing
 from kinematify.envs.model_verdict import require_valid
 from kinematify.errors import InputError
+from kinematify.render.environment_picture import Piece, Renderer, ViewerWindow, has_screen, require_screen
+from kinematify.render.picture import CARCASS, HELD, OTHERS
+from kinematify.robot.robot import fixed_together
 from kinematify.robot.transforms import transformed
 from kinematify.simulation.engines import require_engine
 from kinematify.versions import require
@@ -32,7 +34,6 @@ if TYPE_CHECKING:
     from kinematify.simulation.engines import EngineWorld
     from kinematify.simulation.world import ObjectState
 
-_HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
 _OPTIONS = ("joint", "qpos", "open_fraction")
 _HEIGHT, _WIDTH = 360, 480  # of pictures [pixels]
 _AZIMUTH = 0.6  # of the camera, to the side of the way out, so that it is not seen end on [rad]
@@ -320,15 +321,15 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _pieces(self) -> Sequence[Piece]:
         declared = self.articulated_object.declared
-        held = held_links(self.articulated_object, self.target)
-        colors = {name: _HELD if name in held else _OTHERS for name in self.articulated_object.scene.mechanism.links}
-        colors[declared.root] = _BODY
+        held = fixed_together(declared, self.target.link)
+        colors = {name: HELD if name in held else OTHERS for name in self.articulated_object.scene.mechanism.links}
+        colors[declared.root] = CARCASS
         return [
             Piece(
                 link=link.name,
                 vertices=shape.mesh.vertices,
                 faces=shape.mesh.faces,
-                color=np.array(colors[link.name] if shape.color is None or link.name in held else shape.color[:3]),
+                color=colors[link.name] if shape.color is None or link.name in held else np.array(shape.color[:3]),
             )
             for link in declared.links
             for shape in link.visuals or link.collisions

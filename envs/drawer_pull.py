@@ -12,12 +12,14 @@ from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, find_target
 from kinematify.envs.base import OpeningEnv, made, one_of
-from kinematify.envs.env_picture import Piece
 from kinematify.envs.goal import CONTROL_STEP, OPEN_BOUND, PLACE_BOUND, SPEED_BOUND, SUBSTEPS
 from kinematify.envs.robot_plan import env_robot, robot_plan
 from kinematify.envs.worlds import Servos, arm_facts
+from kinematify.manipulation.kinematics import damped_step
 from kinematify.manipulation.manipulator import hand_links
 from kinematify.manipulation.robot_place import column_mesh
+from kinematify.render.environment_picture import Piece
+from kinematify.render.picture import ARM, HAND, STAND
 from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
 TOOL, JOINT = "tool", "joint"
 ARM_BOUND = 7.0
 """Ends of observed joint values [rad or m]."""
-_ARM_COLOR, _HAND_COLOR, _COLUMN_COLOR = (0.80, 0.83, 0.88), (0.96, 0.58, 0.20), (0.55, 0.58, 0.63)
 REACH_REWARD, GRIP_REWARD = 0.15, 0.15
 """Weights of being near the handle and of holding it, which scale the others so that the sum stays 1."""
 REACH_SCALE = 5.0  # 0.2 m away half of it is left
@@ -259,7 +260,7 @@ class DrawerPullEnv(OpeningEnv):
         robot = [
             Piece(
                 link=ROBOT + link.name, vertices=mesh.vertices, faces=mesh.faces,
-                color=np.array(_HAND_COLOR if link.name in hand else _ARM_COLOR),
+                color=HAND if link.name in hand else ARM,
             )
             for link in self.robot.arm.declared.links
             for mesh in link.meshes
@@ -278,13 +279,7 @@ class DrawerPullEnv(OpeningEnv):
         if found is None:
             return ()
         root = ROBOT + self.robot.scene.model.root
-        return (Piece(link=root, vertices=found[0], faces=found[1], color=np.array(_COLUMN_COLOR)),)
-
-
-def damped_step(jacobian: FloatArray, twist: FloatArray, damping: float) -> FloatArray:
-    """Joint motion for a twist by damped least squares, shape (dof,)."""
-    gram = jacobian @ jacobian.T + damping**2 * np.eye(6)
-    return np.asarray(jacobian.T @ np.linalg.solve(gram, twist))
+        return (Piece(link=root, vertices=found[0], faces=found[1], color=STAND),)
 
 
 make_drawer_pull = partial(made, DrawerPullEnv)

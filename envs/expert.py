@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.envs.drawer_pull import JOINT, JOINT_STEP, TOOL_STEP, TURN_STEP, damped_step
+from kinematify.envs.drawer_pull import JOINT, JOINT_STEP, TOOL_STEP, TURN_STEP
 from kinematify.envs.goal import CONTROL_STEP
 from kinematify.envs.open_part import POSITION
 from kinematify.envs.worlds import HAND_SPEED
 from kinematify.manipulation.execute import eased
+from kinematify.manipulation.kinematics import damped_step
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

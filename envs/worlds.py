@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from kinematify.config.validation import load_settings
-from kinematify.envs.articulated_object import held_links
 from kinematify.envs.goal import CONTROL_STEP, STEP
 from kinematify.envs.joint_dynamics import full_force, joint_dynamics
 from kinematify.geometry.rest_pairs import overlapping_links
 from kinematify.manipulation.manipulator import effort_limits
+from kinematify.robot.robot import fixed_together
 from kinematify.simulation.engines import open_world
 from kinematify.simulation.world import HeldPoint, PlacedModel, PlacedRobot, PullingHand, WorldSpec
 
@@ -157,7 +157,7 @@ def _point(articulated_object: ArticulatedObject, target: Target) -> HeldPoint:
         link=target.link,
         point=target.point,
         axis=articulated_object.declared.joint_by_name[target.joint].axis,
-        body=held_links(articulated_object, target),
+        body=fixed_together(articulated_object.declared, target.link),
     )
 
 

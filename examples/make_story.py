@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image
 
 from kinematify import infer, load_assembly, load_config
-from kinematify.model.preview import PreviewPanel, rest_and_moved, write_sheet
+from kinematify.render.model_picture import PreviewPanel, rest_and_moved, write_sheet
 from kinematify.render.picture import PictureScene, PosedMesh
 
 if TYPE_CHECKING:

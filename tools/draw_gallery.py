@@ -17,9 +17,9 @@ from kinematify.generate.library.kind import COMMON
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.reader import read_sentence
 from kinematify.generate.registry import FAMILIES, all_kinds, build
-from kinematify.model.picture_scene import best_azimuth, joint_glyphs, moving_joints, opened_configuration
-from kinematify.model.preview import MARGIN, draw_panels, panel_size, rest_and_moved, scene_of
-from kinematify.render.picture import BACKGROUND, camera_for, render_scene
+from kinematify.render.model_picture import MARGIN, draw_panels, panel_size, rest_and_moved, scene_of
+from kinematify.render.model_scene import best_azimuth, joint_glyphs, moving_joints, opened_configuration
+from kinematify.render.picture import camera_for, render_scene, row_of
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -119,11 +119,8 @@ def draw_pair(model: KinematicModel, config: PreviewConfig) -> Image.Image:
         config: Size and quality.
     """
     panels = rest_and_moved(model, config, ("", ""))
-    size, images = draw_panels(model, panels, config)
-    sheet = Image.new("RGB", (size[0] * len(images), size[1]), tuple(round(255.0 * value) for value in BACKGROUND))
-    for index, image in enumerate(images):
-        sheet.paste(image, (index * size[0], 0))
-    return sheet
+    _, images = draw_panels(model, panels, config)
+    return row_of(images)
 
 
 def draw_steps(model: KinematicModel, groups: Sequence[Sequence[str]], config: PreviewConfig) -> list[Image.Image]:

@@ -13,8 +13,8 @@ from kinematify import _HOMES
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = (
-    "errors", "versions", "processes", "configs", "config", "robot", "assembly", "geometry", "render",
-    "contact", "joints", "grouping", "topology", "paper", "model", "generate", "pipeline", "simulation", "manipulation",
+    "errors", "versions", "processes", "configs", "config", "robot", "assembly", "geometry", "contact",
+    "joints", "grouping", "topology", "paper", "model", "simulation", "render", "generate", "pipeline", "manipulation",
     "formats", "validation", "refinement", "vision", "creation", "batch", "envs", "view", "evaluation", "cli",
     "__main__",
 )  # fmt: skip

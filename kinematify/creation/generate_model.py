@@ -235,7 +235,7 @@ def _written(
         models.append(write_blueprint(blueprint, folder, config, facts=made.facts))
         write_parts(blueprint, folder / PARTS_FOLDER)
         if preview:
-            from kinematify.model.preview import render_preview  # noqa: PLC0415
+            from kinematify.render.model_picture import render_preview  # noqa: PLC0415
 
             progress("drawing the picture", _INFERRED + 0.4 * share)
             render_preview(models[0], folder / PREVIEW_FILE, config.preview)

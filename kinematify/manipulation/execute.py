@@ -17,7 +17,7 @@ from kinematify.manipulation.manipulator import effort_limits, hand_links
 from kinematify.manipulation.plan_request import Hold
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
-from kinematify.robot.robot import rest_configuration, rigid_groups
+from kinematify.robot.robot import fixed_together, rest_configuration
 from kinematify.simulation.engines import open_world
 from kinematify.simulation.prepared import prepare
 from kinematify.simulation.world import Grip, PlacedModel, PlacedRobot, WorldSpec
@@ -167,7 +167,8 @@ class Loaded:
     @property
     def held_links(self) -> frozenset[str]:
         """Links of the body that the hand holds."""
-        return _body(self.object, self.motion.grasp.held) | _body(self.object, self.held)
+        ends = self.motion.grasp.held, self.held
+        return frozenset(link for end in ends for link in fixed_together(self.object, end))
 
     @property
     def hand_links(self) -> frozenset[str]:
@@ -333,8 +334,3 @@ class _Run:
             grasped=reference.pulls * settings.time_step,
             frames=tuple(self._frames),
         )
-
-
-def _body(robot: Robot, link: str) -> frozenset[str]:
-    """Links that are fixed to a link, itself included."""
-    return frozenset(next(group.links for group in rigid_groups(robot) if link in group.links))

@@ -225,12 +225,7 @@ class _Room:
     def __init__(self, scene: Scene, poses: FloatArray) -> None:
         self._unit = scene.unit
         self._manager = fcl.DynamicAABBTreeCollisionManager()
-        self._objects = [
-            fcl.CollisionObject(
-                body.solid.tree, fcl.Transform(T[:3, :3], (T[:3, :3] @ body.solid.middle + T[:3, 3]) / scene.unit)
-            )
-            for body, T in zip(scene.bodies, poses, strict=True)
-        ]
+        self._objects = [_surface(scene, body, T) for body, T in enumerate(poses)]
         self._manager.registerObjects(self._objects)
         self._manager.setup()
 
@@ -336,11 +331,15 @@ def joint_at(scene: Scene, point: FloatArray) -> str:
 
 def distance_to(scene: Scene, poses: FloatArray, body: int, point: FloatArray) -> float:
     """Distance of a point from the surface of a body [m], in the frame of the root link, bodies at `poses`."""
-    solid, T = scene.bodies[body].solid, poses[body]
-    tree = fcl.CollisionObject(solid.tree, fcl.Transform(T[:3, :3], (T[:3, :3] @ solid.middle + T[:3, 3]) / scene.unit))
     dot = fcl.CollisionObject(fcl.Sphere(1e-3), fcl.Transform(point / scene.unit))
-    distance = fcl.distance(tree, dot, fcl.DistanceRequest(), fcl.DistanceResult())
+    distance = fcl.distance(_surface(scene, body, poses[body]), dot, fcl.DistanceRequest(), fcl.DistanceResult())
     return scene.unit * max(0.0, float(distance))
+
+
+def _surface(scene: Scene, body: int, T: FloatArray) -> fcl.CollisionObject:
+    """Surface of a body at a pose (4, 4), in the unit of the scene."""
+    solid = scene.bodies[body].solid
+    return fcl.CollisionObject(solid.tree, fcl.Transform(T[:3, :3], (T[:3, :3] @ solid.middle + T[:3, 3]) / scene.unit))
 
 
 def _reason(seen: int, held: int, free: int, opening: float) -> str:

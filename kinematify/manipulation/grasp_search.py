@@ -7,7 +7,7 @@ fingers find free lanes beside it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -85,14 +85,7 @@ class Candidates:
 
     def __getitem__(self, rows: BoolArray | IntArray | slice) -> Candidates:
         """Return some of them."""
-        return Candidates(
-            center=self.center[rows],
-            approach=self.approach[rows],
-            closing=self.closing[rows],
-            width=self.width[rows],
-            between=self.between[rows],
-            clearance=self.clearance[rows],
-        )
+        return Candidates(**{name: values[rows] for name, values in vars(self).items()})
 
     @property
     def side(self) -> FloatArray:
@@ -131,8 +124,7 @@ class GraspSearch:
         corners, areas, cross = corners[solid], areas[solid], cross[solid]
         side = _sides(faces[solid], cross, len(vertices))
         weights = areas / np.sqrt(np.bincount(side, areas)[side])
-        count = POINTS
-        picked, barycentric = place_samples(corners, weights, curve_order(corners, weights), count, seed)
+        picked, barycentric = place_samples(corners, weights, curve_order(corners, weights), POINTS, seed)
         return np.asarray(np.einsum("nk,nkd->nd", barycentric, corners[picked]))
 
     def directions(self) -> FloatArray:
@@ -168,8 +160,7 @@ class GraspSearch:
         half = 0.5 * candidates.width + self.slack
         first = self._first(deeper + half[:, None] * candidates.closing, -candidates.closing)[0]
         second = self._first(deeper - half[:, None] * candidates.closing, candidates.closing)[0]
-        slack = self.slack
-        return np.asarray((first < 2.0 * slack) & (second < 2.0 * slack))
+        return np.asarray((first < 2.0 * self.slack) & (second < 2.0 * self.slack))
 
     def extent(self, candidates: Candidates) -> FloatArray:
         """Length of what is held across approach and closing direction [m], inf where it goes on, shape (n,)."""
@@ -214,8 +205,7 @@ class GraspSearch:
             clearance=np.zeros(len(rows)),
         )
         free = found[self._lanes_free(found)]
-        free = Candidates(**{**vars(free), "clearance": self._clearance(free)})
-        return free, (len(centers), len(found), len(free))
+        return replace(free, clearance=self._clearance(free)), (len(centers), len(found), len(free))
 
     def _lanes_free(self, found: Candidates) -> BoolArray:
         """Test whether rays along both edges of both fingers come in as far as the tips, shape (n,)."""
@@ -296,5 +286,4 @@ def _across(approach: FloatArray, steps: int) -> FloatArray:
 
 
 def _joined(parts: Sequence[Candidates]) -> Candidates:
-    names = ("center", "approach", "closing", "width", "between", "clearance")
-    return Candidates(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+    return Candidates(**{name: np.concatenate([vars(part)[name] for part in parts]) for name in vars(parts[0])})

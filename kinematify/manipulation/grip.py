@@ -14,7 +14,8 @@ from trimesh.intersections import slice_faces_plane
 
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.geometry.scene import judged_shapes
-from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.manipulation.grasp_search import FINGER_WIDTH
+from kinematify.robot.robot import fixed_together, forward_kinematics
 from kinematify.robot.transforms import transformed
 from kinematify.robot.vectors import referenced
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Robot
 
-_PAD = 0.02  # length and width of the pads, those of the built-in arm [m]
 _THIN = 1e-3  # sheets are made so thick [m]
 
 
@@ -42,7 +42,7 @@ def grip_piece(model: Robot, link: str, values: Mapping[str, float], grasp: Gras
         Vertices in the frame of the link [m], shape (V, 3), and faces (F, 3). Where nothing lies between the pads, a
         block as thick as the grasp says.
     """
-    high = np.array([0.5 * _PAD, 0.5 * grasp.spread, 0.5 * _PAD])
+    high = np.array([0.5 * FINGER_WIDTH, 0.5 * grasp.spread, 0.5 * FINGER_WIDTH])
     low = -high
     back = np.asarray(np.linalg.inv(grasp.T_link_grasp), dtype=np.float64)
     points = _clipped(transformed(_triangles(model, link, grasp.held, values), back), low, high)
@@ -56,9 +56,8 @@ def grip_piece(model: Robot, link: str, values: Mapping[str, float], grasp: Gras
 def _triangles(model: Robot, link: str, held: str, values: Mapping[str, float]) -> FloatArray:
     """Corners of all faces of the held body, frame of the link, shape (F, 3, 3)."""
     poses = forward_kinematics(model, values)
-    group = next(group for group in rigid_groups(model) if held in group.links)
     found = [np.empty((0, 3, 3))]
-    for name in group.links:
+    for name in fixed_together(model, held):
         declared = model.link_by_name[name]
         T = np.linalg.inv(poses[link]) @ poses[name]
         for shape in judged_shapes(declared):

@@ -205,6 +205,12 @@ class Arm:
         return pin.buildReducedModel(model, locked, q)
 
 
+def damped_step(jacobian: FloatArray, twist: FloatArray, damping: float) -> FloatArray:
+    """Joint motion for a twist by damped least squares, shape (dof,)."""
+    gram = jacobian @ jacobian.T + damping**2 * np.eye(6)
+    return np.asarray(jacobian.T @ np.linalg.solve(gram, twist))
+
+
 def _features(poses: FloatArray) -> FloatArray:
     """Position and approach direction of poses (n, 4, 4), shape (n, 6); the last joint sees to the rest."""
     return np.concatenate([poses[:, :3, 3], _RADIAN * poses[:, :3, 2]], axis=1)

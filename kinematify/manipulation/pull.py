@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.manipulation.kinematics import damped_step
+
 if TYPE_CHECKING:
     from kinematify.manipulation.collision_world import CollisionWorld
     from kinematify.manipulation.kinematics import Arm
@@ -124,8 +126,7 @@ class Puller:
     def _why_not(self, q: FloatArray, target: FloatArray) -> Stop:
         """Why inverse kinematics gets no farther than a posture."""
         arm, near = self.arm, _NEAR_LIMIT * (self.arm.upper - self.arm.lower)
-        jacobian = arm.jacobian(q)
-        step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + 1e-4 * np.eye(6), arm.error(q, target))
+        step = damped_step(arm.jacobian(q), arm.error(q, target), 0.01)
         held = ((q < arm.lower + near) & (step < 0.0)) | ((q > arm.upper - near) & (step > 0.0))
         if held.any():
             name = arm.robot.arm_joints[int(np.argmax(held * np.abs(step)))]

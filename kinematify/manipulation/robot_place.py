@@ -6,6 +6,7 @@ asked for all places at once.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -189,13 +190,12 @@ class Places:
 
     def _spread(self, found: list[tuple[float, int, int, RobotPlacement]]) -> list[tuple[float, RobotPlacement]]:
         """Make further tries of the same grasp, or of the same place, dearer."""
-        grasps: dict[int, int] = {}
-        spots: dict[tuple[int, int], int] = {}
+        grasps, spots = Counter[int](), Counter[tuple[int, int]]()
         dearer = []
         for cost, grasp, spot, place in found:
-            more = _GRASP_RANK * grasps.get(grasp, 0) + _PLACE_RANK * spots.get((grasp, spot), 0)
-            grasps[grasp] = grasps.get(grasp, 0) + 1
-            spots[grasp, spot] = spots.get((grasp, spot), 0) + 1
+            more = _GRASP_RANK * grasps[grasp] + _PLACE_RANK * spots[grasp, spot]
+            grasps[grasp] += 1
+            spots[grasp, spot] += 1
             dearer.append((cost + more, place))
         return dearer
 
@@ -207,8 +207,8 @@ class Places:
     def _far(self, bases: FloatArray, tools: FloatArray) -> list[float]:
         """For every base (n, 4, 4) how far the arm's samples are from the hardest pose of the tool (k, 4, 4)."""
         targets = np.linalg.inv(bases)[:, None] @ tools[None]
-        far = self._arm.distances(targets.reshape(-1, 4, 4)).reshape(len(bases), -1).max(axis=1)
-        return [float(value) for value in far]
+        far: list[float] = self._arm.distances(targets.reshape(-1, 4, 4)).reshape(len(bases), -1).max(axis=1).tolist()
+        return far
 
     def _bases(self, middle: FloatArray) -> FloatArray:
         """Poses of the robot around a point, the arm facing it, clear of the object, shape (n, 4, 4)."""

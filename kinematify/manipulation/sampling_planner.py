@@ -9,6 +9,7 @@ from ompl import base as ob
 from ompl import geometric as og
 from ompl import util as ou
 
+from kinematify.manipulation.grasp import APPROACH
 from kinematify.manipulation.pull import JUMP_AT
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.kinematics import Arm
     from kinematify.robot.arrays import FloatArray
 
-_APPROACH, _APPROACH_STEPS = 0.06, 6  # the hand comes in along a straight line of so many poses from so far off [m]
+_APPROACH_STEPS = 6  # the hand comes in along a straight line of so many poses
 # Configurations that are checked in search of a path from one place, so far apart at most [rad or m]: most paths need a
 # few hundred, 5 cm at the elbow. A search that counts finds the same on any machine.
 _REACH_CHECKS, _REACH_STEP = 6000, 0.08
@@ -63,7 +64,7 @@ def _straight_in(arm: Arm, world: CollisionWorld, grasp: FloatArray) -> FloatArr
     path, q, end = [grasp], grasp, arm.pose(grasp)
     for share in np.linspace(0.0, 1.0, _APPROACH_STEPS + 1)[1:]:
         target = end.copy()
-        target[:3, 3] -= share * _APPROACH * end[:3, 2]
+        target[:3, 3] -= share * APPROACH * end[:3, 2]
         moved = arm.solve(target, q)
         if moved is None or float(np.abs(moved - q).max()) > JUMP_AT:
             return "the straight way in is out of its reach"

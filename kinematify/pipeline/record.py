@@ -72,7 +72,7 @@ def write_inference_files(
         (folder / GROUPS_FILE).write_text(inference.grouping.to_json(), encoding="utf-8")
     if preview:
         report("drawing the picture", 0.7)
-        from kinematify.model.preview import render_preview  # noqa: PLC0415 - a third of a second
+        from kinematify.render.model_picture import render_preview  # noqa: PLC0415 - a third of a second
 
         render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 from PIL import Image
 
 from kinematify.config import load_config
-from kinematify.render.picture import render_scene
+from kinematify.render.picture import camera_for, render_scene, row_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
 
     from kinematify.render.camera import Camera
     from kinematify.render.picture import PictureScene
+
+_SIZE, _STILL_SIZE = (360, 290), (360, 330)  # of the film of a run, and of each panel of its still [pixels]
+_COLORS = 64  # of the film's palette, shades of five colours: a film of 3 s has 0.2 MB
+_LAST_SECONDS = 1.5  # that the last picture is shown
+_AZIMUTHS = 12  # sides from which the view is tried
+_MARGIN = 14.0  # [pixels]
 
 
 def draw_all(scenes: Sequence[PictureScene], camera: Camera) -> list[Image.Image]:
@@ -49,3 +56,32 @@ def write_gif(
     reduced[0].save(
         target, format="GIF", save_all=True, append_images=reduced[1:], duration=durations, loop=0, optimize=True
     )
+
+
+def watching_side(moments: Sequence[PictureScene], watched: int) -> float:
+    """Azimuth of a camera [rad] from which most is seen of the first meshes of all scenes, small ones too."""
+    config = load_config("default").preview
+
+    def worth(azimuth: float) -> float:
+        size = (config.probe_pixels, round(config.probe_pixels * 0.75))
+        camera = camera_for(moments, azimuth, config, size=size, margin=2.0)
+        return sum(float(np.sqrt(scene.visible_pixels(camera)[:watched]).sum()) for scene in moments)
+
+    step = 2.0 * np.pi / _AZIMUTHS
+    return max((step * (index + 0.4) for index in range(_AZIMUTHS)), key=worth)
+
+
+def write_run(frames: Sequence[PictureScene], path: Path, seconds: float, azimuth: float) -> None:
+    """Write the GIF of a run that takes some seconds, seen from a side; the last picture is shown longer."""
+    pictures = draw_all(frames, _camera(frames, azimuth, _SIZE))
+    write_gif(pictures, path, seconds / max(len(pictures) - 1, 1), colors=_COLORS, last=_LAST_SECONDS)
+
+
+def write_moments(moments: Sequence[PictureScene], path: Path, captions: Sequence[str], azimuth: float) -> None:
+    """Write a PNG with moments of a run side by side, each under its caption."""
+    panels = draw_all(moments, _camera(moments, azimuth, _STILL_SIZE))
+    row_of(panels, captions, above=34, middle=19, font=17).save(path)
+
+
+def _camera(scenes: Sequence[PictureScene], azimuth: float, size: tuple[int, int]) -> Camera:
+    return camera_for(scenes, azimuth, load_config("default").preview, size=size, margin=_MARGIN)

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
 
 from kinematify.geometry.rays import RayScene
@@ -31,6 +31,12 @@ if TYPE_CHECKING:
 
 BACKGROUND = np.array([0.972, 0.976, 0.984])
 """sRGB of the empty picture, shape (3,)."""
+INK = (45, 50, 60)
+"""Of words, sRGB in bytes."""
+ARM, HAND, STAND = np.array([0.80, 0.83, 0.88]), np.array([0.96, 0.58, 0.20]), np.array([0.55, 0.58, 0.63])
+"""sRGB of a robot, of what grips, and of what the robot stands on."""
+HELD, OTHERS, CARCASS = np.array([0.16, 0.62, 0.56]), np.array([0.62, 0.72, 0.80]), np.array([0.86, 0.80, 0.71])
+"""sRGB of the part of an object that is moved, of its other parts, and of what stands still."""
 _FLOOR_SHADOW = 0.6  # share of the light that the floor loses where it sees no sky
 _SKY, _LAMP, _GLOSS = 0.80, 0.46, 0.07  # shares of the light; above 1 in all, so that lit faces are bright
 _UNDERSIDE = 0.58  # light of the sky on faces that look down, relative to those that look up
@@ -116,6 +122,42 @@ def camera_for(
         size=size,
         margin=margin,
     )
+
+
+def row_of(
+    images: Sequence[Image.Image],
+    captions: Sequence[str] = (),
+    *,
+    above: int = 0,
+    middle: int = 0,
+    font: int = 24,
+    below: int = 0,
+) -> Image.Image:
+    """Pictures of one size side by side, each under its caption.
+
+    Args:
+        images: From left to right.
+        captions: Of each; none if there are none.
+        above: Height of the line of captions [pixels].
+        middle: Of the line, from the top [pixels].
+        font: Size of its letters [pixels].
+        below: Empty height under the pictures [pixels].
+    """
+    width, height = images[0].size
+    row = Image.new("RGB", (width * len(images), above + height + below), in_bytes(BACKGROUND))
+    for index, image in enumerate(images):
+        row.paste(image, (index * width, above))
+    draw = ImageDraw.Draw(row)
+    for index, caption in enumerate(captions):
+        center = (index * width + width // 2, middle)
+        draw.text(center, caption, fill=INK, font=ImageFont.load_default(font), anchor="mm")
+    return row
+
+
+def in_bytes(color: FloatArray) -> tuple[int, int, int]:
+    """Colour as Pillow takes it, from sRGB in [0, 1], shape (3,)."""
+    red, green, blue = (round(float(value) * 255.0) for value in color)
+    return red, green, blue
 
 
 def render_scene(scene: PictureScene, camera: Camera, config: PreviewConfig) -> Image.Image:

@@ -13,7 +13,8 @@ import numpy as np
 from kinematify.errors import DescriptionError
 from kinematify.robot.arrays import ReadOnlyArrays
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import joint_motion, rotation_about
+from kinematify.robot.transforms import joint_motion, rotation_about, transformed
+from kinematify.robot.vectors import as_one
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -341,6 +342,27 @@ def rigid_groups(robot: Robot) -> tuple[RigidGroup, ...]:
     return tuple(
         RigidGroup(links=tuple(links), has_geometry=any(robot.link_by_name[n].has_geometry for n in links))
         for links in members.values()
+    )
+
+
+def fixed_together(robot: Robot, link: str) -> tuple[str, ...]:
+    """Return the links that no joint moves against a link, itself included, parents before children."""
+    return next(group.links for group in rigid_groups(robot) if link in group.links)
+
+
+def group_mesh(robot: Robot, group: RigidGroup, zero: Mapping[str, FloatArray]) -> tuple[FloatArray, IntArray]:
+    """Return all meshes of a group as one, frame of its top link: vertices (V, 3) and faces (F, 3).
+
+    Args:
+        robot: The robot.
+        group: Of its links.
+        zero: Pose of every link where all joints are at zero, shape (4, 4) each.
+    """
+    back = np.linalg.inv(zero[group.top])
+    return as_one(
+        (transformed(mesh.vertices, back @ zero[link]), mesh.faces)
+        for link in group.links
+        for mesh in robot.link_by_name[link].meshes
     )
 
 

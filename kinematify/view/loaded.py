@@ -18,7 +18,6 @@ from kinematify.robot.description import notes_of
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.transforms import transformed
 from kinematify.versions import require
 
 if TYPE_CHECKING:
@@ -34,8 +33,6 @@ if TYPE_CHECKING:
 
 _AZIMUTH = -1.0
 """Of the camera of a picture [rad]: in front of the model, which looks along -y, and a little to its right."""
-_MARGIN = 24.0
-"""Around the model in a picture [pixels]."""
 _SLACK = 1e-6
 """Share of a limit by which a value may pass it: files round their limits to six digits."""
 
@@ -132,33 +129,12 @@ class LoadedModel:
         Raises:
             InputError: As for `pose`, or the model has no geometry.
         """
-        from kinematify.config import load_config  # noqa: PLC0415  # and the renderer: half a second
-        from kinematify.model.urdf import usual_colors  # noqa: PLC0415
-        from kinematify.render.picture import (  # noqa: PLC0415
-            PictureScene,
-            PosedMesh,
-            camera_for,
-            render_scene,
-        )
+        from kinematify.render.model_picture import draw_robot  # noqa: PLC0415  # half a second
 
-        poses, colors = self.pose(q), usual_colors(len(self.robot.links))
-        meshes = [
-            PosedMesh(
-                vertices=transformed(mesh.vertices, poses[link.name]),
-                faces=mesh.faces,
-                color=color,
-                appearance=mesh.appearance,
-            )
-            for link, color in zip(self.robot.links, colors, strict=True)
-            for mesh in link.meshes
-            if len(mesh.faces)
-        ]
-        if not meshes:
+        poses = self.pose(q)
+        if not any(len(mesh.faces) for link in self.robot.links for mesh in link.meshes):
             raise InputError(f"{self.path} has no geometry that can be drawn.")
-        scene, config = PictureScene(meshes=tuple(meshes)), load_config().preview
-        size = (config.panel_width, config.panel_height)
-        camera = camera_for([scene], azimuth, config, size=size, margin=_MARGIN)
-        return render_scene(scene, camera, config)
+        return draw_robot(self.robot, poses, azimuth)
 
     def to_mujoco(self) -> Any:
         """Return a `mujoco.MjModel` of this model, with its colours, and a motor for each joint that has an effort.

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.grouping.numbered_pieces import BODY
+from kinematify.render.piece_sheet import piece_colors
 from kinematify.robot.vectors import box_around
 from kinematify.view.panel import PAGE, plain
-from kinematify.vision.sheet import piece_colors
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence

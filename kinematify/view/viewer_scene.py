@@ -13,12 +13,13 @@ from kinematify.robot.appearance import Material, joined, plain, surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import (
     forward_kinematics,
+    group_mesh,
     joint_values,
     rest_configuration,
     rigid_groups,
 )
 from kinematify.robot.transforms import across, joint_motion, rotation_about, transformed
-from kinematify.robot.vectors import as_one, box_around
+from kinematify.robot.vectors import box_around
 from kinematify.validation.formats.view_data import camera_turn
 
 if TYPE_CHECKING:
@@ -309,10 +310,9 @@ class ViewScene:
         return scene, DepthAllowance(scene, OverlapQueries(scene))
 
     def _mesh(self, group: RigidGroup) -> tuple[FloatArray, IntArray, Appearance | None]:
-        T_top_root = np.linalg.inv(self._zero[group.top])
-        meshes = [(self._zero[link], mesh) for link in group.links for mesh in self.robot.link_by_name[link].meshes]
-        looks = joined([mesh.appearance for _, mesh in meshes], [len(mesh.faces) for _, mesh in meshes])
-        return *as_one((transformed(mesh.vertices, T_top_root @ T), mesh.faces) for T, mesh in meshes), looks
+        meshes = [mesh for link in group.links for mesh in self.robot.link_by_name[link].meshes]
+        looks = joined([mesh.appearance for mesh in meshes], [len(mesh.faces) for mesh in meshes])
+        return *group_mesh(self.robot, group, self._zero), looks
 
 
 def _color(index: int) -> Rgba:

@@ -16,8 +16,8 @@ from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.grouping.groups import joined_pieces, numbered_pieces
 from kinematify.grouping.numbered_pieces import BODY, MOST_NUMBERS, NamedPart
+from kinematify.render.piece_sheet import draw_sheet
 from kinematify.robot.vectors import box_around
-from kinematify.vision.sheet import draw_sheet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

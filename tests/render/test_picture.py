@@ -12,15 +12,15 @@ from examples.make_story import render_story
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
-from kinematify.model.picture_scene import (
+from kinematify.model.urdf import distinct_colors, link_colors, link_shades
+from kinematify.render.model_picture import render_preview
+from kinematify.render.model_scene import (
     GLYPH_COLORS,
     best_azimuth,
     joint_glyphs,
     opened_configuration,
     posed_meshes,
 )
-from kinematify.model.preview import render_preview
-from kinematify.model.urdf import distinct_colors, link_colors, link_shades
 from kinematify.render.picture import PictureScene, PosedMesh, camera_for, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType

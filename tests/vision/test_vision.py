@@ -22,12 +22,12 @@ from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.grouping.groups import group_pieces, numbered_pieces
 from kinematify.grouping.numbered_pieces import BODY, MOST_NUMBERS, NamedPart
+from kinematify.render.piece_sheet import draw_sheet
 from kinematify.robot.joint_type import JointType
 from kinematify.vision.ask import PieceVote, voter_record
 from kinematify.vision.client import ADDRESS, ChatOracle, oracle_of
 from kinematify.vision.piece_question import PieceQuestion, piece_question
 from kinematify.vision.screening import known_questions
-from kinematify.vision.sheet import draw_sheet
 from kinematify.vision.votes import VoterRecord, follow_parts
 from tests.one_mesh import box, write_chest
 

@@ -13,8 +13,8 @@ import numpy as np
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.model.kinematic_model import KinematicModel, ModelLink
-from kinematify.model.preview import render_preview
 from kinematify.model.urdf import link_colors, link_shades
+from kinematify.render.model_picture import render_preview
 from kinematify.robot.appearance import joined, linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
+from kinematify.robot.robot import forward_kinematics, group_mesh, rest_configuration, rigid_groups
 from kinematify.robot.transforms import transformed
-from kinematify.robot.vectors import as_one
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -43,7 +42,7 @@ def view_data(robot: Robot, *, faces: int, colors: Mapping[str, FloatArray]) -> 
     """
     groups = rigid_groups(robot)
     T_root_link = forward_kinematics(robot, {joint.name: 0.0 for joint in robot.joints if joint.mimic is None})
-    meshes = [_mesh(robot, group, T_root_link) for group in groups]
+    meshes = [group_mesh(robot, group, T_root_link) for group in groups]
     total = sum(len(f) for _, f in meshes)
     if not total:
         return None
@@ -65,16 +64,6 @@ def view_data(robot: Robot, *, faces: int, colors: Mapping[str, FloatArray]) -> 
         "bodies": bodies,
         "joints": [_joint(joint, rest[joint.name]) for joint in _moving(robot)],
     }
-
-
-def _mesh(robot: Robot, group: RigidGroup, T_root_link: Poses) -> tuple[FloatArray, IntArray]:
-    """All meshes of a group in the frame of its top link."""
-    T_top_root = np.linalg.inv(T_root_link[group.top])
-    return as_one(
-        (transformed(mesh.vertices, T_top_root @ T_root_link[link]), mesh.faces)
-        for link in group.links
-        for mesh in robot.link_by_name[link].meshes
-    )
 
 
 def _extent(
