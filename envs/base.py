@@ -56,6 +56,8 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         "render_modes": ["rgb_array", "human"] if has_screen() else ["rgb_array"],
         "render_fps": 20,
     }
+    goal_type: ClassVar[type[Goal]] = Goal
+    """What is success, and how near the object is to it: what a task of your own replaces."""
     _with_robot: ClassVar[bool] = False
     _helping: ClassVar[float] = 0.0
     """Weight of what a subclass rewards beside opening (`_helped`)."""
@@ -118,7 +120,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _aim(self, joint: str) -> None:
         self.target = self._targeted(joint)
-        self.goal = Goal(self.articulated_object, self.target, self.open_fraction)
+        self.goal = self.goal_type(self.articulated_object, self.target, self.open_fraction)
         # The hold at rest, world frame, the object at its usual place [m], shape (3,).
         at_rest = self.T_world_root @ self.articulated_object.link_pose(self.target.joint)
         self.middle: FloatArray = np.asarray(at_rest[:3, :3] @ self.target.point + at_rest[:3, 3])

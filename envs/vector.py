@@ -50,6 +50,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         *,
         max_episode_steps: int = EPISODE_STEPS["open_part"],
         threads: int | None = None,
+        env_type: type[OpenPartEnv] = OpenPartEnv,
         **keywords: Any,
     ) -> None:
         """Make the environments.
@@ -58,6 +59,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
             num_envs: How many.
             max_episode_steps: Actions after which episodes are truncated.
             threads: Of MuJoCo; as many as there are cores if None.
+            env_type: Class of each copy.
             keywords: Of `OpenPartEnv`; `engine` can only be ``mujoco``.
 
         Raises:
@@ -79,7 +81,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
                 'vectorization_mode="sync" or "async" for pixels.'
             )
         self.num_envs, self._longest = num_envs, max_episode_steps
-        self._envs = [OpenPartEnv(**keywords) for _ in range(num_envs)]
+        self._envs = [env_type(**keywords) for _ in range(num_envs)]
         first = self._envs[0]
         self.goal, self.render_mode = first.goal, first.render_mode
         self.single_action_space, self.single_observation_space = first.action_space, hand_space(first.goal)
