@@ -234,4 +234,5 @@ def with_materials(part: Part, record: dict[str, Any]) -> Part:
     """Colour and density as the source knew them."""
     facts: dict[str, Any] = next((item for item in record["parts"] if item["name"] == part.name), {})
     color = facts.get("color")
-    return replace(part, color=None if color is None else tuple(color), density=facts.get("density"))
+    look = None if color is None else part.appearance  # else the colour that its file was given would become its own
+    return replace(part, color=None if color is None else tuple(color), appearance=look, density=facts.get("density"))

@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.grouping.groups import GROUPS_FILE, Group, Grouping, stated_groups
-from kinematify.model.output import check_output
+from kinematify.model.output import check_output, write_model_folder
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.folder import open_model_folder, read_record, stored_state, write_refined
 from kinematify.refinement.hints import AXES, Hint, with_hints
@@ -46,8 +46,9 @@ class ModelFolder:
     def __init__(self, folder: Path) -> None:
         """Keep the place; nothing is read yet."""
         self.folder = folder
-        self._steps: list[Inference] = []
-        """Models of the folder, the present one last."""
+        self._state: Inference | None = None
+        self._before: list[tuple[Inference, dict[Path, bytes]]] = []
+        """Model and content of the folder before each choice."""
 
     def keep(self, part: str, chosen: JointAlternative) -> SavedEdit:
         """Make a part move as a candidate says, and write the model.
@@ -70,27 +71,29 @@ class ModelFolder:
     def _current_state(self) -> Inference:
         """The model as it is in the folder."""
         check_output(self.folder, overwrite=True)
-        if not self._steps:
+        if self._state is None:
             assembly, config = open_model_folder(self.folder)
             record = read_record(self.folder)
             inference = infer(assembly, config=config, base=record["trees"][0]["root"])
             left = stored_state(inference, record)
-            self._steps.append(replace(left, grouping=_stated_grouping(assembly, record)) if record["groups"] else left)
-        return self._steps[-1]
+            self._state = replace(left, grouping=_stated_grouping(assembly, record)) if record["groups"] else left
+        return self._state
 
     def _write(self, before: Inference, after: Inference, hints: tuple[str, ...]) -> SavedEdit:
+        files = {file.relative_to(self.folder): file.read_bytes() for file in self.folder.rglob("*") if file.is_file()}
         write_refined(after, self.folder, preview=True)
-        self._steps.append(after)
+        self._before.append((before, files))
+        self._state = after
         new = tuple(warning for warning in after.warnings if warning not in before.warnings)
         return SavedEdit(hints=hints, command=self._command(after), warnings=new)
 
     @property
     def can_undo(self) -> bool:
         """True if a joint was chosen here."""
-        return len(self._steps) > 1
+        return bool(self._before)
 
     def undo(self) -> None:
-        """Write the model as it was before the last choice.
+        """Write the folder as it was before the last choice, byte for byte.
 
         Raises:
             InputError: Nothing was chosen.
@@ -98,8 +101,16 @@ class ModelFolder:
         """
         if not self.can_undo:
             raise InputError("Nothing was chosen here that could be taken back. Choose a candidate first.")
-        write_refined(self._steps[-2], self.folder, preview=True)
-        self._steps.pop()
+        before, files = self._before[-1]
+
+        def restore(staging: Path) -> None:
+            for name, content in files.items():
+                (staging / name).parent.mkdir(parents=True, exist_ok=True)
+                (staging / name).write_bytes(content)
+
+        write_model_folder(self.folder, restore, overwrite=True)
+        self._before.pop()
+        self._state = before
 
     def _command(self, inference: Inference) -> str:
         hints = [word for text in inference.hints for word in ("--hint", text)]
