@@ -102,20 +102,16 @@ class DrawnModel:
         """Top links of what can be seen."""
         return tuple(self._frames)
 
-    def place(self, q: Mapping[str, float], share: float) -> None:
-        """Put everything where the joints stand.
-
-        Args:
-            q: Leader -> value [rad or m].
-            share: How far the model is taken apart, 0 for not at all.
-        """
-        poses, apart = self._scene.poses(q), self._scene.apart(share)
+    def place(self, q: Mapping[str, float]) -> None:
+        """Put everything where the joints stand, leader -> value [rad or m]."""
+        poses = self._scene.poses(q)
         with self._server.atomic():
             for top, frame in self._frames.items():
-                offset = apart.get(top, np.zeros(3))
-                frame.wxyz, frame.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3] + offset
-            for name in self._axes:
-                self._place_axis(self._scene.robot.joint_by_name[name], poses, apart)
+                frame.wxyz, frame.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3]
+            for name, handle in self._axes.items():
+                joint = self._scene.robot.joint_by_name[name]
+                T = poses[joint.parent] @ joint.T_parent_child
+                handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3]
             if self.complete:
                 self._draw_chains(poses)
 
@@ -231,12 +227,6 @@ class DrawnModel:
         return self._server.scene.add_line_segments(
             name, points.astype(np.float32), colors, thickness=3.0, thickness_units="screen", visible=visible
         )
-
-    def _place_axis(self, joint: Joint, poses: Mapping[str, FloatArray], apart: Mapping[str, FloatArray]) -> None:
-        T = poses[joint.parent] @ joint.T_parent_child
-        handle = self._axes[joint.name]
-        offset = apart.get(self._scene.group_of(joint.child), np.zeros(3))
-        handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3] + offset
 
     def _draw_chains(self, poses: Mapping[str, FloatArray]) -> None:
         """Draw a dashed line along every pin that was cut, and from one end of it to the other where it came apart."""

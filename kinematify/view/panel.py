@@ -119,7 +119,6 @@ class Panel:
             with tabs.add_tab(f"Findings ({len(sights)})"):
                 self._add_findings(sights)
         with tabs.add_tab("View"):
-            self.apart = gui.add_slider("Explode [%]", 0, 100, 1, 0)
             self.axes = gui.add_checkbox("Axes", initial_value=True)
             self.picture, self.film = gui.add_button("Picture (PNG)"), gui.add_button("Film (GIF)")
             with gui.add_folder("Parts", expand_by_default=False):

@@ -121,7 +121,6 @@ class ModelViewer:
             self._sweeping: str | None = None
             self._sweep_start = 0.0
             self._waiting: Callable[[ModelFolder], SavedEdit | None] | None = None
-            self._apart = 0.0
             self._stale = True
             self._gizmo: Any = None
             self._line = (np.array([1.0, 0.0, 0.0]), np.zeros(3))
@@ -147,7 +146,6 @@ class ModelViewer:
             (panel.hand_limits, lambda _: self.change_line()),
             (panel.keep, lambda _: self.keep()),
             (panel.undo, lambda _: self.undo()),
-            (panel.apart, self._take_apart),
             (panel.axes, lambda event: drawn.show_axes(event.target.value)),
             (panel.picture, lambda event: self.send_picture(event.client)),
             (panel.film, lambda event: self.send_film(event.client)),
@@ -225,7 +223,7 @@ class ModelViewer:
         with self._lock:
             if not self._drawn.complete:
                 self._drawn.add_marks()
-                self._drawn.place(self._q, self._apart)
+                self._drawn.place(self._q)
 
     def click(self, top: str) -> None:
         """Choose a part, and the joint that carries it or the one that leads that."""
@@ -474,12 +472,6 @@ class ModelViewer:
             self._sweeping = None if self._sweeping == self._chosen else self._chosen
             self._sweep_start = time.monotonic()
 
-    def _take_apart(self, event: Any) -> None:
-        """Take the model apart, 0 % for not at all."""
-        with self._lock:
-            self._apart = event.target.value / 100.0
-            self._place()
-
     def send_picture(self, client: Any) -> None:
         """Make the page of a client draw a picture from where it looks, and offer it there."""
         width, height = _PICTURE
@@ -502,7 +494,7 @@ class ModelViewer:
 
     def _place(self) -> None:
         """Put everything where the joints stand; collisions are looked for later, since that takes longer."""
-        self._drawn.place(self._q, self._apart)
+        self._drawn.place(self._q)
         if self._gizmo is not None and self._chosen is not None:
             T, (axis, pivot) = self._carried(self._chosen), self._line
             self._gizmo.wxyz = quaternion_of(rotation_from_x(T[:3, :3] @ axis))

@@ -140,16 +140,6 @@ class ViewScene:
         """Top link of the group that holds a link."""
         return next(group.top for group in self.groups if link in group.links)
 
-    def apart(self, share: float) -> dict[str, FloatArray]:
-        """Return how far every group is moved from the middle of all when the model is taken apart [m], shape (3,).
-
-        Args:
-            share: 0 for not at all; at 1 the middle of a group is twice as far from that of all.
-        """
-        middles = {top: corners.mean(axis=0) for top, corners in self.bounds.items()}
-        middle = np.mean(list(middles.values()), axis=0) if middles else np.zeros(3)
-        return {top: share * (own - middle) for top, own in middles.items()}
-
     @cached_property
     def ground(self) -> float:
         """Height of the lowest point at rest, frame of the root link [m]."""

@@ -157,14 +157,6 @@ def test_a_model_without_colours_gets_some_and_one_with_colours_keeps_them(urdf:
     assert (1.0, 0.0, 0.0, 0.5) in {surface.material.color for surface in shown["door"]}
 
 
-def test_a_model_is_taken_apart_from_its_middle(scene: ViewScene) -> None:
-    assert all(np.allclose(offset, 0.0) for offset in scene.apart(0.0).values())
-    apart = scene.apart(1.0)
-    middles = {top: corners.mean(axis=0) for top, corners in scene.bounds.items()}
-    difference = middles["door"] - middles["frame"]
-    assert np.allclose(apart["door"] - apart["frame"], difference)
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
