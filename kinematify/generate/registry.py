@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.generate.described import kind_in
 from kinematify.generate.library.kind import KINDS, Kind, built
 
 if TYPE_CHECKING:
@@ -54,6 +53,8 @@ def kind_named(name: str) -> Kind | None:
     """Return the kind of a name, None if there is none; of those in Python only its module is imported."""
     if name not in KINDS:
         if (file := _FOLDER / f"{name}.yaml").exists():
+            from kinematify.generate.described import kind_in  # noqa: PLC0415 - the schema takes a tenth of a second
+
             return kind_in(file)
         begins = re.compile(rf"^def {re.escape(name)}_?\(", re.MULTILINE)
         for module in sorted(_FOLDER.glob("[a-z]*.py")):

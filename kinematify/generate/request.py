@@ -11,7 +11,6 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from kinematify.errors import InputError
 from kinematify.generate.kind_search import key_of, kind_called, nearest_kinds, words_of
 from kinematify.generate.library.kind import checked
-from kinematify.generate.procedural.blueprint_file import read_values
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
 from kinematify.generate.registry import kind_named
 
@@ -215,6 +214,8 @@ def read_request(path: Path) -> dict[str, Any]:
     Raises:
         InputError: It cannot be read, or is no mapping.
     """
+    from kinematify.generate.procedural.blueprint_file import read_values  # noqa: PLC0415 - a schema that few need
+
     values = read_values(path)
     if not isinstance(values, dict):
         raise InputError(f"The file {path} holds no request: a mapping with kind, parameters, size and parts.")

@@ -25,7 +25,7 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.generate.library.builder import CAREFUL, ObjectBuilder
 from kinematify.generate.procedural import parameter as parameters_of
-from kinematify.generate.procedural.blueprint_file import parents_first
+from kinematify.generate.procedural.blueprint import parents_first
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.parameter import Parameter, details_of, phrases
 from kinematify.generate.procedural.solids import SEGMENTS

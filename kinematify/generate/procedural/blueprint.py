@@ -17,7 +17,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion, transformed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Mimic
@@ -192,6 +192,18 @@ class Blueprint:
 
 def _placed(part: Part, transform: FloatArray) -> Part:
     return replace(part, vertices=transformed(part.vertices, transform))
+
+
+def parents_first(joints: Sequence[BlueprintJoint]) -> tuple[BlueprintJoint, ...]:
+    """Return joints in an order in which every parent link is there before its child."""
+    by_parent: dict[str, list[BlueprintJoint]] = {}
+    for joint in joints:
+        by_parent.setdefault(joint.parent, []).append(joint)
+    children = {joint.child for joint in joints}
+    found = [joint for parent, below in by_parent.items() if parent not in children for joint in below]
+    for joint in found:  # grows while it is walked
+        found.extend(by_parent.get(joint.child, []))
+    return tuple(found)
 
 
 def ground_truth(blueprint: Blueprint) -> GroundTruth:

@@ -35,7 +35,7 @@ from manifold3d import Manifold
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.blueprint import BlueprintJoint
+from kinematify.generate.procedural.blueprint import BlueprintJoint, parents_first
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, lathe, ring, rounded_block, section, union
 from kinematify.generate.procedural.workshop import Workshop
@@ -567,18 +567,6 @@ def read_blueprint(path: Path) -> Blueprint:
         InputError: It cannot be read or does not fit.
     """
     return described_blueprint(read_values(path), source=f"blueprint {path}")
-
-
-def parents_first(joints: Sequence[BlueprintJoint]) -> tuple[BlueprintJoint, ...]:
-    """Return joints in an order in which every parent link is there before its child."""
-    by_parent: dict[str, list[BlueprintJoint]] = {}
-    for joint in joints:
-        by_parent.setdefault(joint.parent, []).append(joint)
-    children = {joint.child for joint in joints}
-    found = [joint for parent, below in by_parent.items() if parent not in children for joint in below]
-    for joint in found:  # grows while it is walked
-        found.extend(by_parent.get(joint.child, []))
-    return tuple(found)
 
 
 def _among(name: str, known: Sequence[str] | Mapping[str, object], what: str) -> str:
