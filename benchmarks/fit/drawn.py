@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -53,7 +53,7 @@ def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Bl
         InputError: It cannot be built with what is drawn.
     """
     rng = np.random.default_rng([seed, zlib.crc32(f"{_SEEDS} {name}".encode())])
-    someone = ModelingStyle.drawn(rng)
+    someone = style_of_somebody(rng)
     built = _drawn_by(corpus_kinds()[name], style or someone, rng)
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     mirrored = bool(rng.random() < 0.5)
@@ -64,6 +64,29 @@ def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Bl
         for part in built.parts
     )
     return replace(built, parts=parts, joints=tuple(_seen(joint, placed, mirrored) for joint in built.joints))
+
+
+def style_of_somebody(rng: np.random.Generator) -> ModelingStyle:
+    """Draw how a person models."""
+
+    def one_of(*options: Any) -> Any:
+        return options[int(rng.integers(len(options)))]
+
+    return ModelingStyle(
+        gap=one_of(0.0, 0.0, 0.0005, 0.002, 0.005, 0.01),
+        has_bore=one_of(True, False),
+        hollow=one_of(True, True, False),
+        sides=one_of(8, 12, 16, 24, 32, 48),
+        grips=one_of("merged", "merged", "apart", "none"),
+        barrels=one_of(True, False, False),
+        max_penetration=one_of(0.0, 0.0, 0.2, 0.5),
+        line=one_of(0.0, 0.5, 0.5, 1.0),
+        drawer=one_of("tray", "tray", "block", "front"),
+        wheel=one_of("disc", "disc", "tyre", "spokes"),
+        knob=one_of("plain", "plain", "pointer", "bar", "ball", "star"),
+        initial_opening=one_of(0.0, 0.0, 0.0, 0.1, 0.3, 0.6),
+        rounded=one_of(False, False, False, True),
+    )
 
 
 def _drawn_by(family: Kind, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:

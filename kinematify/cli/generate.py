@@ -111,7 +111,7 @@ def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple
 )
 @click.option("--rounds", type=click.IntRange(min=1), metavar="N", help="Most answers of the language model.")
 @click.option(
-    "--record", type=click.Path(path_type=Path), metavar="DIR", help="Save what the source makes, for --replay."
+    "--record", type=click.Path(path_type=Path), metavar="DIR", help="Save answers of the language model for --replay."
 )
 @click.option("--replay", type=click.Path(path_type=Path), metavar="DIR", help="Use what was recorded; send nothing.")
 @click.option("--resend", is_flag=True, help="Repeat steps that failed or have no recorded answer.")

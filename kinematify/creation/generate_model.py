@@ -42,8 +42,8 @@ _TAKEN_BY: dict[str, tuple[str | None, ...]] = {
     "--time-limit": _SOURCES,
     "--budget": ("rodin", "llm"),
     "--rounds": ("llm",),
-    "--record": _SOURCES,
-    "--replay": _SOURCES,
+    "--record": ("llm",),
+    "--replay": ("llm",),
     "--resend": _SOURCES,
 }
 """Options -> the sources that take them; None is the library."""
@@ -95,7 +95,7 @@ def generate(
         time_limit: Of the program, the job or an answer [s].
         budget: Refuse a job that costs more; for ``llm``, the number of tokens after which no round starts.
         rounds: Most answers of the language model.
-        record: Folder that keeps what the source makes.
+        record: Folder that keeps the answers of the language model.
         replay: Such a folder to use; nothing is sent.
         resend: Repeat steps that failed or have no recorded answer.
         up: Axis that points up in the parts of a source.

@@ -17,7 +17,7 @@ from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import language_model
 from kinematify.generate.providers.rodin import RodinSource
-from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
+from kinematify.generate.providers.source import check_prompt
 from kinematify.model.output import MODEL_FILE, write_model_folder
 from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.formats.report_files import report_on
@@ -65,14 +65,10 @@ def _part_source(name: str, order: Order) -> PartSource:
     limit, chosen = order.time_limit, order.config.sources.rodin
     if name == "rodin":
         asked = chosen if limit is None else chosen.model_copy(update={"job_seconds": limit})
-        source: PartSource = RodinSource(asked, order.budget)
-    elif order.program is None:
+        return RodinSource(asked, order.budget)
+    if order.program is None:
         raise InputError("--source command needs --command 'program {image} {out}'.")
-    else:
-        source = CommandSource(order.program, limit or order.config.sources.command_seconds)
-    if order.record is not None:
-        return RecordingSource(source, order.record)
-    return source if order.replay is None else ReplayedSource(source, order.replay)
+    return CommandSource(order.program, limit or order.config.sources.command_seconds)
 
 
 def made_parts(

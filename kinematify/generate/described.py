@@ -18,7 +18,7 @@ from kinematify.generate.procedural.blueprint_file import (
     Repetition,
     Vector,
 )
-from kinematify.generate.procedural.parameter import Parameter, details_of, number, parse_table
+from kinematify.generate.procedural.parameter import Parameter, details_of, parse_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -129,9 +129,8 @@ class ObjectDescription(CountParameters, BlueprintDescription):
 
 def _repeated(word: str, said: Mapping[str, Any]) -> Parameter:
     """The count of what a blueprint repeats."""
-    words = (word, *said.get("words", ()))
-    low, high = said["bounds"]
-    return number(f"{word}s", said["count"], (low, high), "So many.", words=words, drawn=False)
+    words, bounds = (word, *said.get("words", ())), tuple(said["bounds"])
+    return Parameter(name=f"{word}s", default=said["count"], bounds=bounds, help="So many.", words=words, drawn=False)
 
 
 def _carried(name: str, joints: Mapping[str, BlueprintJoint]) -> list[str]:

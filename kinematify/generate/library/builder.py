@@ -61,29 +61,6 @@ class ModelingStyle:
     rounded: bool
     """Boxes have rounded edges."""
 
-    @classmethod
-    def drawn(cls, rng: np.random.Generator) -> ModelingStyle:
-        """Somebody."""
-
-        def one_of(*options: Any) -> Any:
-            return options[int(rng.integers(len(options)))]
-
-        return cls(
-            gap=one_of(0.0, 0.0, 0.0005, 0.002, 0.005, 0.01),
-            has_bore=one_of(True, False),
-            hollow=one_of(True, True, False),
-            sides=one_of(8, 12, 16, 24, 32, 48),
-            grips=one_of("merged", "merged", "apart", "none"),
-            barrels=one_of(True, False, False),
-            max_penetration=one_of(0.0, 0.0, 0.2, 0.5),
-            line=one_of(0.0, 0.5, 0.5, 1.0),
-            drawer=one_of("tray", "tray", "block", "front"),
-            wheel=one_of("disc", "disc", "tyre", "spokes"),
-            knob=one_of("plain", "plain", "pointer", "bar", "ball", "star"),
-            initial_opening=one_of(0.0, 0.0, 0.0, 0.1, 0.3, 0.6),
-            rounded=one_of(False, False, False, True),
-        )
-
 
 CAREFUL = ModelingStyle(
     gap=0.001, has_bore=True, hollow=True, sides=24, grips="merged", barrels=False, max_penetration=0.0, line=1.0,

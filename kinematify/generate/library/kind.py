@@ -24,7 +24,6 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.library.builder import CAREFUL, ObjectBuilder
-from kinematify.generate.procedural import parameter as parameters_of
 from kinematify.generate.procedural.blueprint import parents_first
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.parameter import Parameter, details_of, phrases
@@ -93,27 +92,6 @@ class Kind:
     def all_parameters(self) -> tuple[Parameter, ...]:
         """Its own and the common ones."""
         return (*self.parameters, *COMMON)
-
-
-_INSTEAD = "How far {} stand open instead of a share; {} stay closed."
-COMMON = (
-    parameters_of.number("open", 0.0, (0.0, 1.0), "Share of the way that moving parts stand open."),
-    parameters_of.number(
-        "clearance", 0.001, (0.0, 0.003), "Gap between what moves past each other.", unit="m", usual=(2e-4, 3e-3)
-    ),
-    parameters_of.choice("style", STYLES, "Of the meshes: as drawn, or as from elsewhere."),
-    parameters_of.choice("material", ("", *MATERIALS), "What the base is made of."),
-    parameters_of.choice("color", ("", *COLORS), "Colour of what names no material of its own."),
-    parameters_of.choice(
-        "handle_material", sorted(MATERIALS, key="metal".__ne__), "What handles are made of.", drawn=False
-    ),
-    parameters_of.choice("handle_color", ("", *COLORS), "Colour of handles, if painted.", drawn=False),
-    parameters_of.number(
-        "open_angle", 0.0, (0.0, math.pi), _INSTEAD.format("hinges", "slides"), unit="rad", drawn=False
-    ),
-    parameters_of.number("open_distance", 0.0, (0.0, 5.0), _INSTEAD.format("slides", "hinges"), unit="m", drawn=False),
-)
-"""Parameters of every kind."""
 
 
 _NOT_DRAWN = ("material", "color")
@@ -235,7 +213,8 @@ def length(low: float, high: float, *, unit: str = "m", default: float | None = 
         facts: `usual` (the bounds that a seed draws from, all if absent), `help`, `words` and `drawn` of `Parameter`.
     """
     middle = float(f"{0.5 * (low + high):.3g}") if default is None else default
-    return parameters_of.number("", middle, (low, high), **{"help": _HELP, "usual": (low, high), "unit": unit, **facts})
+    given = {"help": _HELP, "usual": (low, high), **facts, "words": phrases(facts.get("words", ""))}
+    return Parameter(name="", default=middle, unit=unit, bounds=(low, high), **given)
 
 
 def angle(low: float, high: float, **facts: Any) -> Parameter:
@@ -250,19 +229,44 @@ def share(low: float, high: float, **facts: Any) -> Parameter:
 
 def whole(low: int, high: int, *, default: int | None = None, **facts: Any) -> Parameter:
     """Return a bounded count; arguments as of `length`."""
-    middle = int(0.5 * (low + high)) if default is None else default
-    return parameters_of.number("", middle, (low, high), **{"help": _HELP, "usual": (low, high), **facts})
+    return share(low, high, default=int(0.5 * (low + high)) if default is None else default, **facts)
 
 
-def choice(choices: Sequence[str] | Mapping[str, str], *, help: str = _HELP, **facts: Any) -> Parameter:
-    """Return one of several, the first if nothing is said; a mapping gives words for each."""
-    return parameters_of.choice("", choices, help, **facts)
+def choice(
+    choices: Sequence[str] | Mapping[str, str], *, help: str = _HELP, words: Words = "", **facts: Any
+) -> Parameter:
+    """Return one of several, the first if nothing is said; a mapping gives words for each. Without any: free text."""
+    said = choices.items() if isinstance(choices, dict) else ()
+    return Parameter(
+        name="",
+        default=next(iter(choices), ""),
+        choices=tuple(choices),
+        help=help,
+        words=phrases(words),
+        choice_words={key: phrases(words) for key, words in said if words},
+        **facts,
+    )
 
 
-def yes(chance: float, *, help: str = _HELP, **facts: Any) -> Parameter:
+def yes(chance: float, **facts: Any) -> Parameter:
     """Return what holds or not, in a share of what seeds draw."""
-    usual = ("yes", "no") if chance >= 0.5 else ("no", "yes")
-    return replace(parameters_of.choice("", usual, help, **facts), yes=chance)
+    return choice(("yes", "no") if chance >= 0.5 else ("no", "yes"), yes=chance, **facts)
+
+
+_INSTEAD = "How far {} stand open instead of a share; {} stay closed."
+_COMMON = {
+    "open": share(0.0, 1.0, default=0.0, usual=None, help="Share of the way that moving parts stand open."),
+    "clearance": length(0, 0.003, default=1e-3, usual=(2e-4, 3e-3), help="Gap between what moves past each other."),
+    "style": choice(STYLES, help="Of the meshes: as drawn, or as from elsewhere."),
+    "material": choice(("", *MATERIALS), help="What the base is made of."),
+    "color": choice(("", *COLORS), help="Colour of what names no material of its own."),
+    "handle_material": choice(sorted(MATERIALS, key="metal".__ne__), help="What handles are made of.", drawn=False),
+    "handle_color": choice(("", *COLORS), help="Colour of handles, if painted.", drawn=False),
+    "open_angle": angle(0.0, math.pi, default=0.0, usual=None, help=_INSTEAD.format("hinges", "slides"), drawn=False),
+    "open_distance": length(0.0, 5.0, default=0.0, usual=None, help=_INSTEAD.format("slides", "hinges"), drawn=False),
+}
+COMMON = tuple(replace(item, name=name) for name, item in _COMMON.items())
+"""Parameters of every kind."""
 
 
 # ---- registering -----------------------------------------------------------------------------------------------------

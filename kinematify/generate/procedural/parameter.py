@@ -58,48 +58,11 @@ class Parameter:
         return (own.removesuffix("s") if isinstance(self.default, int) else own, *self.words)
 
 
-def number(
-    name: str,
-    default: float,
-    bounds: _Range,
-    help: str,
-    *,
-    unit: str = "",
-    usual: _Range | None = None,
-    words: Words = "",
-    drawn: bool = True,
-) -> Parameter:
-    """A number with its unit, a count where the default is whole."""
-    return Parameter(
-        name=name, default=default, unit=unit, bounds=bounds, usual=usual, help=help, words=phrases(words), drawn=drawn
-    )
-
-
-def choice(
-    name: str,
-    choices: Sequence[str] | Mapping[str, str],
-    help: str,
-    *,
-    words: Words = "",
-    drawn: bool = True,
-) -> Parameter:
-    """One of several, the first if nothing is said; a mapping gives words for each. Any text if there are none."""
-    named = choices if isinstance(choices, Mapping) else {}
-    return Parameter(
-        name=name,
-        default=next(iter(choices), ""),
-        choices=tuple(choices),
-        help=help,
-        words=phrases(words),
-        choice_words={key: phrases(said) for key, said in named.items() if said},
-        drawn=drawn,
-    )
-
-
 def details_of(details: Mapping[str, int]) -> tuple[Parameter, ...]:
     """Return a count for each word for what belongs to parts of an object."""
     return tuple(
-        number(f"{word}s", count, (count, count), "Belongs to it.", words=word) for word, count in details.items()
+        Parameter(name=f"{word}s", default=count, bounds=(count, count), help="Belongs to it.", words=(word,))
+        for word, count in details.items()
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -252,20 +253,21 @@ def test_killed_client_resumes_and_pays_once(server: RodinServer, tmp_path: Path
     assert SECRET not in (tmp_path / "box" / "inference.json").read_text(encoding="utf-8")
 
 
-def test_recording_is_replayed_without_key_and_network(
+def test_a_finished_job_answers_without_key_and_network(
     server: RodinServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     image = tmp_path / "box.png"
     Image.new("RGB", (64, 64), "red").save(image)
     words = ["generate", "--image", str(image), "--source", "rodin", "--no-validation", "--no-preview"]
-    assert run([*words, "--record", str(tmp_path / "tape"), "-o", str(tmp_path / "first")]) == 0
+    assert run([*words, "-o", str(tmp_path / "first")]) == 0
     assert image.read_bytes() in server.bodies[0]
     before = server.requests.copy()
     monkeypatch.delenv(KEY)
-    assert run([*words, "--replay", str(tmp_path / "tape"), "-o", str(tmp_path / "second")]) == 0
+    shutil.copytree(tmp_path / "first.job", tmp_path / "second.job")
+    assert run([*words, "-o", str(tmp_path / "second")]) == 0
     assert server.requests == before
     urdfs = [(tmp_path / name / "model.urdf").read_text(encoding="utf-8") for name in ("first", "second")]
     assert urdfs[0] == urdfs[1]
     capsys.readouterr()
-    assert run([*words, "--seed", "9", "--replay", str(tmp_path / "tape"), "-o", str(tmp_path / "third")]) == 2
-    assert "Nothing is recorded" in capsys.readouterr().err
+    assert run([*words, "--seed", "9", "-o", str(tmp_path / "third")]) == 2
+    assert KEY in capsys.readouterr().err
