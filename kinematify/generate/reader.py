@@ -243,7 +243,7 @@ class Sentence:
         if count > 1 and _counted(self.family, head):
             self._add(head, _Thing(facts={"count": count}))
         elif name != head and not ("pair" in before.said and any(word.endswith(name) for word in self.family.words)):
-            self.copies = max(count, 1)
+            self.copies = count
         elif "pair" not in before.said and count > 1:
             before.odd += before.said
         self._give("", before)
@@ -726,7 +726,7 @@ class Sentence:
         counted = {lemma(item.name): item for item in self.family.parameters if isinstance(item.default, int)}
         fields = [(cell, thing.facts) for noun, thing in self.things.items() if (cell := self._cell(noun))]
         if any(cell != "shelf" and facts.get("count") for cell, facts in fields):
-            for cell in (CELLS & counted.keys()) - dict(fields).keys():
+            for cell in sorted((CELLS & counted.keys()) - dict(fields).keys()):
                 self.values.setdefault(counted[cell].name, 0)
         sides = (*_OPPOSITE, "top", "bottom")
         placed = any(facts.keys() & {"row", "grid", "each_side"} or facts.get("side") in sides for _, facts in fields)
