@@ -194,6 +194,14 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\ba (?=(?:metre|meter|foot) (?:and|wide|high|tall|long|deep|across|in|by)\b)", "1 "),
     (r"(\d+) and a half\b", r"\1.5"),
     (r"(\d+ ?\w+) (?:off|above|from) the (?:floor|ground)", r", \1 high,"),
+    (
+        (
+            r"^(?:(?:for|in) [^,;:.]*?,? )?(?:i|we|you|they|my \w+|our \w+) (?:(?:am|are|is|would|just|really) )*"
+            r"(?:(?:look|search|ask)(?:s|ing)? for|wants?|needs?|like|design(?:ing)?|build(?:ing)?|simulat(?:e|ing)) "
+            r"|^something (?:\w+ )*?for [^,;:.]*[,:] "
+        ),
+        "",
+    ),
     (r"^for (?:my|our|the) \w+,? (?=an? )", ""),
     (r"^((?:an? |the )?)built~? in ", r"\1"),
     (r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick|across)\b)", " inch "),

@@ -411,7 +411,7 @@ class Sentence:
                 facts["count"] = int(number)
         elif role in "qx":
             return self._size(k, thing)
-        elif role == "c" and not (word == "paper" and is_part):
+        elif self._mean(k, look) and not (word == "paper" and is_part):
             if facts.setdefault(look, self._mean(k, look)) != self._mean(k, look):
                 thing.odd.append(word)
         elif role == "s":
@@ -807,7 +807,7 @@ class Sentence:
         unread = [said for how, said in self.moves if not some.get(how, all)(moves_so(joint, how) for joint in joints)]
         for noun, thing in self.things.items():
             if noun in lost:
-                said = " ".join(filter(None, thing.said))
+                said = " ".join(thing.said)
                 unread.append(" ".join([*(word for word in thing.odd if word not in said), said]).strip())
             elif noun not in made.missing:
                 unread += thing.odd

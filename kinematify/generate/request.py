@@ -6,7 +6,7 @@ import math
 import re
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from kinematify.errors import InputError
 from kinematify.generate.kind_search import key_of, kind_called, nearest_kinds, words_of
@@ -123,6 +123,20 @@ class PartRequest(_Fields):
     open: Annotated[float | tuple[float, Literal["m", "rad"]] | None, BeforeValidator(_opening)] = Field(
         None, description="How far they stand open: a share in [0, 1], or text: 30 deg, 12 cm."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _motion_of_range(cls, values: Any) -> Any:
+        """Say of a range in metres that the part slides, of one in degrees that it turns."""
+        found = _RANGE.fullmatch(str(values.get("range")).strip()) if isinstance(values, dict) else None
+        if found is None or not found[3]:
+            return values
+        slides, motion = found[3] in UNITS, values.get("motion") or "move"
+        if motion != "move" and slides is not (motion in ("slide", "lift")):
+            raise ValueError(
+                f"a range of {values['range']!r} is of what {'slides' if slides else 'turns'}, not {motion}"
+            )
+        return {**values, "motion": ("slide" if slides else "hinge") if motion == "move" else motion}
 
 
 class Request(_Fields):

@@ -25,6 +25,10 @@ QUARTER, EIGHTH = math.pi / 2, math.pi / 4
         ("a box, 40 x 30 x 20 cm", {"size": {"width": 0.4, "depth": 0.3, "height": 0.2}}),
         ("a grey wardrobe 2 metres high with three mirrored doors",
          {"size": {"height": 2.0}, "parts.door.material": "mirror"}),
+        ("a cupboard with two mirror doors", {"parts.door.material": "mirror"}),
+        ("a dresser with two small drawers in the top row and three wide drawers below, the bottom one half open",
+         {"parts.drawer.count": 5, "parts.bottom drawer.open": 0.5}),
+        ("a wardrobe, 6 ft 6 in tall", {"size": pytest.approx({"height": 1.9812})}),
         ("a laptop opened by 90 degrees", {"parameters.open_angle": QUARTER}),
         ("a safe with its door half open", {"parts.door.open": 0.5}),
         ("a paper cutter with an arm that swings up by 45 degrees", {"parts.arm.range": (0.0, EIGHTH)}),
@@ -46,6 +50,9 @@ QUARTER, EIGHTH = math.pi / 2, math.pi / 4
         ("a fridge with a six-spoke handle", {"parts.handle.count": 1}),
         ("a microwave with a door hinged along the left edge", {"parts.door.hinge": "left", "parameters": {}}),
         ("a dollhouse style doll's cupboard", {"kind": "cabinet"}),
+        ("We are looking for a fridge with two doors", {"kind": "fridge", "parts.door.count": 2}),
+        ("For our lab we need a cabinet whose door slides", {"kind": "cabinet", "parts.door.motion": "slide"}),
+        ("Something pretty for the hall: a cabinet with two doors", {"kind": "cabinet"}),
     ],
 )  # fmt: skip
 def test_a_sentence_fills_a_request(text, expected):

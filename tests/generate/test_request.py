@@ -48,6 +48,7 @@ def test_a_request_is_built_as_it_says():
         ({"size.widht": "1 m"}, "'width'"),
         ({"door.color": "mauve"}, "turquoise"),
         ({"door.range": "wide"}, "-30 to 90 deg"),
+        ({"door.range": "0 to 12 cm", "door.motion": "hinge"}, "is of what slides, not hinge"),
         ({"door.count": "many"}, "count"),
         ({"size.width": "-3"}, "greater than 0"),
     ],
@@ -67,6 +68,16 @@ def test_what_the_object_cannot_do_is_a_difference_each():
     assert listed == ("camera: pan was asked for, it is revolute",), "a level axis does not pan"
     far = deliver(request_of({"kind": "laptop", "parts": {"screen": {"range": "0 to 400 deg"}}}))
     assert "screen: range 0 to 400 deg was asked for" in far.differences[0]
+
+
+def test_the_unit_of_a_range_says_how_a_part_moves():
+    values = with_settings({"kind": "cabinet"}, {"drawer.range": "0 to 12 cm", "door.range": "0 to 60 deg"})
+    made = deliver(request_of(values))
+    assert made.differences == ()
+    reach = {joint.child: joint.upper for joint in made.blueprint.joints}
+    assert [reach["drawer_1"], reach["door_1"]] == pytest.approx([0.12, math.pi / 3])
+    values = with_settings({"kind": "cabinet"}, {"door.range": "0 to 12 cm"})
+    assert deliver(request_of(values)).differences == ("door: slide was asked for, it is revolute",)
 
 
 def test_a_range_is_asked_of_every_part_of_that_name():
