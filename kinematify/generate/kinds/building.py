@@ -175,10 +175,10 @@ def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int,
     words=(
         "doorway, gate, garden gate, front door, house door, interior door, room door, baby gate, safety gate, "
         "yard gate, fence gate, cellar door, closet door, shower door, entrance door, back door, office door, "
-        "cell door, side gate, picket gate, double door, french doors, double leaf door, french door, saloon "
-        "doors, swing doors, pair of doors, two leaf door, folding door, bifold door, accordion door, bi-fold "
-        "door, concertina door, sliding room door, sliding door, barn door, pocket door, patio door, sliding barn "
-        "door"
+        "cell door, side gate, picket gate, double door, french doors, double leaf door, french door, saloon doors, "
+        "swing doors, pair of doors, two leaf door, folding door, bifold door, accordion door, bi-fold door, "
+        "concertina door, sliding room door, sliding door, barn door, pocket door, patio door, sliding barn door, "
+        "bathroom door, bedroom door, kitchen door, balcony door, fire door, screen door"
     ),
     material="wood",
     width=length(0.7, 5.0, default=0.95, usual=(0.8, 1.4), help="Outer width."),
@@ -529,8 +529,8 @@ def window(
 @kind(
     "switch panel",
     words=(
-        "light switch, wall switch, switch plate, switch, switchboard, dimmer switch, toggle switch, rocker "
-        "switch, double switch plate, lamp switch"
+        "light switch, wall switch, switch plate, switch, dimmer switch, toggle switch, rocker switch, double "
+        "switch plate, lamp switch, light switch panel"
     ),
     material="plastic",
     rockers=whole(
@@ -612,15 +612,13 @@ def switch_panel(
 @kind(
     "button panel",
     words=(
-        "keypad, control panel, push button panel, number pad, elevator panel, key pad, remote control, "
-        "calculator, numeric pad, lift panel, elevator button panel, call panel, console, housing, machine "
-        "housing, lab box, instrument box, junction box, control unit, thermostat, alarm panel, light switch "
-        "panel, timer, remote, tv remote, garage door opener, walkie talkie, pager, pocket calculator, mixer "
-        "console, dj controller, drum machine, effects pedal, stopwatch, mp3 player, music player, walkman, "
-        "handheld console, handheld game console, game boy, numpad, numeric keypad, key fob, midi controller, "
-        "launchpad, digital piano, electric piano, toy piano, card reader, card terminal, pos terminal, "
-        "payment terminal, baby monitor, gps device, pocket radio, arcade stick, fight stick, tv controller, "
-        "universal remote, graphing calculator, stage piano"
+        "keypad, control panel, push button panel, number pad, elevator panel, key pad, remote control, calculator, "
+        "numeric pad, lift panel, elevator button panel, call panel, console, housing, machine housing, lab box, "
+        "instrument box, control unit, thermostat, alarm panel, remote, tv remote, garage door opener, walkie "
+        "talkie, pager, pocket calculator, drum machine, effects pedal, stopwatch, mp3 player, music player, "
+        "walkman, handheld console, handheld game console, game boy, numpad, numeric keypad, key fob, midi "
+        "controller, launchpad, card reader, card terminal, pos terminal, payment terminal, baby monitor, gps "
+        "device, pocket radio, tv controller, universal remote, graphing calculator"
     ),
     material="plastic",
     width=length(0.06, 0.6, default=0.12, usual=(0.08, 0.25), help="Outer width."),

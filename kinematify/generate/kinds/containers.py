@@ -24,25 +24,23 @@ if TYPE_CHECKING:
 @kind(
     "box",
     words=(
-        "chest box, treasure chest, treasure chest box, toolbox, tool box, jewelry box, jewellery box, crate, "
-        "case, container, casket, trunk, lunch box, pencil box, storage box, sewing kit box, money box, gift "
-        "crate, apple crate, tub, storage bench, hope chest, blanket chest, toy box, toy chest, cool box, "
-        "esky, picnic basket, lunchbox, pencil case, gift box, ring box, glasses case, briefcase, instrument "
-        "case, record case, camera case, cash box, file box, linen chest, dowry chest, blanket box, storage "
-        "bin, recycling bin, recycling box, deck box, cushion box, coffer, sandbox, sand box, log box, coal "
-        "box, feed bin, storage chest, storage trunk, pirate chest, steamer trunk, sewing basket, wicker "
-        "basket, bait box, fishing box, ammo box, ammunition box, first aid box, first aid kit, medicine box, "
-        "shoe box, shoebox, hat box, packing box, moving box, shipping box, shipping crate, transport box, "
-        "flight case, equipment case, road case, tool case, drill case, vanity case, beauty case, humidor, "
-        "cooler box, picnic hamper, keepsake box, memory box, toy crate, tool crate, violin case, guitar "
-        "case, trumpet case, saxophone case, gun case, rifle case, keyboard case, poker case, chess box, "
-        "coffin, sarcophagus, snuff box, trinket box, spice box, card box, seed tin, sardine tin, cigarette "
-        "case, cufflink box, earbud case, charging case, contact lens case"
+        "chest box, treasure chest, treasure chest box, toolbox, tool box, jewelry box, jewellery box, crate, case, "
+        "container, casket, trunk, lunch box, pencil box, storage box, sewing kit box, money box, gift crate, apple "
+        "crate, storage bench, hope chest, blanket chest, toy box, toy chest, cool box, esky, picnic basket, "
+        "lunchbox, pencil case, gift box, ring box, glasses case, briefcase, instrument case, record case, camera "
+        "case, cash box, file box, linen chest, dowry chest, blanket box, storage bin, recycling bin, recycling "
+        "box, deck box, cushion box, coffer, log box, coal box, feed bin, storage chest, storage trunk, pirate "
+        "chest, steamer trunk, sewing basket, wicker basket, bait box, fishing box, ammo box, ammunition box, first "
+        "aid box, first aid kit, medicine box, shoe box, shoebox, hat box, packing box, moving box, shipping box, "
+        "shipping crate, transport box, flight case, equipment case, road case, tool case, drill case, vanity case, "
+        "beauty case, humidor, cooler box, picnic hamper, keepsake box, memory box, toy crate, tool crate, violin "
+        "case, guitar case, trumpet case, saxophone case, gun case, rifle case, keyboard case, poker case, chess "
+        "box, coffin, sarcophagus, snuff box, trinket box, spice box, card box, seed tin, cigarette case, cufflink "
+        "box, earbud case, charging case, contact lens case, cooler, ice chest"
     ),
     usual={
-        "tub": {"width": 0.55, "depth": 0.35, "height": 0.32},
         "storage bench, hope chest, blanket chest, toy box, toy chest": {"width": 1.1, "depth": 0.45, "height": 0.5},
-        "cool box, esky, picnic basket": {"width": 0.6, "depth": 0.4, "height": 0.4},
+        "cool box, esky, picnic basket, cooler, ice chest": {"width": 0.6, "depth": 0.4, "height": 0.4},
         "lunchbox, pencil case, gift box, ring box, glasses case": {"width": 0.25, "depth": 0.15, "height": 0.1},
         "briefcase, instrument case, record case, camera case, cash box, file box": {
             "width": 0.45,
@@ -51,8 +49,7 @@ if TYPE_CHECKING:
         },
         (
             "linen chest, dowry chest, blanket box, storage bin, recycling bin, recycling box, deck box, cushion "
-            "box, coffer, sandbox, sand box, log box, coal box, feed bin, storage chest, storage trunk, pirate "
-            "chest, steamer trunk"
+            "box, coffer, log box, coal box, feed bin, storage chest, storage trunk, pirate chest, steamer trunk"
         ): {"width": 1, "depth": 0.5, "height": 0.5},
         (
             "sewing basket, wicker basket, bait box, fishing box, ammo box, ammunition box, first aid box, first "
@@ -66,8 +63,8 @@ if TYPE_CHECKING:
         ): {"width": 0.9, "depth": 0.35, "height": 0.15},
         "coffin, sarcophagus": {"width": 2, "depth": 0.7, "height": 0.5},
         (
-            "snuff box, trinket box, spice box, card box, seed tin, sardine tin, cigarette case, cufflink box, "
-            "earbud case, charging case, contact lens case"
+            "snuff box, trinket box, spice box, card box, seed tin, cigarette case, cufflink box, earbud case, "
+            "charging case, contact lens case"
         ): {"width": 0.12, "depth": 0.08, "height": 0.06},
     },
     title="box with a lid",

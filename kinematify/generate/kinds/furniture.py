@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 @kind(
     "sideboard with sliding doors",
-    words="sliding door sideboard, sliding door cabinet, sliding door wardrobe",
+    words=(
+        "sliding door sideboard, sliding door cabinet, sliding door wardrobe, sliding wardrobe, wardrobe with "
+        "sliding doors"
+    ),
     width=length(1.0, 2.0),
     height=length(0.5, 0.9),
     depth=length(0.35, 0.5),
@@ -82,10 +85,10 @@ def standing_desk(b: ObjectBuilder, width: float, depth: float, height: float) -
 @kind(
     "piano stool",
     words=(
-        "swivel stool, bar stool, screw stool, music stool, stool, barstool, swivel bar stool, counter stool, "
-        "pub stool, work stool, drafting stool, lab stool, vanity stool, saddle stool, kitchen stool, drum "
-        "stool, drum throne, rotating stool, bar chair, artist stool, milking stool, massage stool, doctor "
-        "stool, dentist stool, shop stool, revolving stool, spinning stool, cobbler stool"
+        "swivel stool, bar stool, screw stool, music stool, stool, barstool, swivel bar stool, counter stool, pub "
+        "stool, work stool, drafting stool, lab stool, vanity stool, saddle stool, kitchen stool, drum stool, drum "
+        "throne, rotating stool, bar chair, artist stool, massage stool, doctor stool, dentist stool, shop stool, "
+        "revolving stool, spinning stool, cobbler stool"
     ),
     radius=length(0.15, 0.22),
     height=length(0.4, 0.6),
@@ -158,7 +161,11 @@ def crib(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
 
 @kind(
     "bar cart",
-    words=("serving trolley, tea trolley, serving cart, tea cart, kitchen cart, kitchen trolley, hostess trolley"),
+    words=(
+        "serving trolley, tea trolley, serving cart, tea cart, kitchen cart, kitchen trolley, hostess trolley, "
+        "drinks trolley, drinks cart, dessert cart, service cart, service trolley, dish cart, utility cart, rolling "
+        "cart"
+    ),
     width=length(0.5, 0.9),
     depth=length(0.35, 0.5),
     height=length(0.7, 0.95),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @kind(
     "jigsaw",
-    words="jig saw, sabre saw, saber saw, fretsaw machine",
+    words="jig saw, sabre saw, saber saw",
     part_words={"base_plate": "base, shoe, sole, plate, sole plate", "trigger": "switch"},
     size=length(0.9, 1.2),
 )
@@ -122,16 +122,17 @@ def glue_gun(b: ObjectBuilder, size: float) -> None:
         beam(0.035 * size, 0.03 * size, p(-0.05, 0, 0.11), p(-0.08, 0, 0.01), Y),
         color="blue",
     )
-    b.bore("body", b.cylinder(0.0056 * size, p(-0.1, 0, 0.125), p(0, 0, 0.125)))
+    b.bore("body", b.cylinder(0.0065 * size, p(-0.1, 0, 0.125), p(0, 0, 0.125)))
     b.part("stick", b.cylinder(0.0055 * size, p(-0.14, 0, 0.125), p(-0.01, 0, 0.125)), color="white")
     b.slide("stick", parent="body", axis=X, lower=-0.04, upper=0.008)
-    b.part("trigger", beam(0.014 * size, 0.012 * size, p(0.0, 0, 0.098), p(-0.02, 0, 0.03), Y), color="black")
-    b.hinge("trigger", parent="body", axis=Y, pivot=p(0, 0, 0.098), upper=0.25)
+    b.cut("body", box(p(-0.013, -0.008, 0), p(0.01, 0.008, 0.112)))
+    b.part("trigger", beam(0.014 * size, 0.012 * size, p(0, 0, 0.103), p(-0.02, 0, 0.03), Y), color="black")
+    b.hinge("trigger", parent="body", axis=Y, pivot=p(0, 0, 0.103), upper=0.25)
 
 
 @kind(
     "scroll saw",
-    words="fret saw, fretsaw, scrollsaw",
+    words="fret saw, fretsaw, scrollsaw, fretsaw machine",
     part_words={"knob": "speed knob, dial", "arm": "upper arm"},
     size=length(0.9, 1.2),
 )

@@ -25,10 +25,7 @@ if TYPE_CHECKING:
 @kind(
     "excavator",
     walls=180,
-    words=(
-        "digger, backhoe, mini excavator, power shovel, toy excavator, backhoe loader, toy digger, trencher, "
-        "crawler excavator"
-    ),
+    words="digger, backhoe, mini excavator, power shovel, toy excavator, toy digger, crawler excavator",
     material="steel",
     length=length(1.5, 5.0, default=2.6, usual=(1.6, 4.0), help="Of the tracks."),
     width=length(1.0, 4.0, default=1.8, usual=(1.2, 2.6), help="Over the tracks."),
@@ -143,8 +140,8 @@ def excavator(
 @kind(
     "crane",
     words=(
-        "tower crane, mobile crane, construction crane, hoist, toy crane, harbor crane, dock crane, truck "
-        "crane, toy tower crane, building crane"
+        "tower crane, mobile crane, construction crane, toy crane, harbor crane, dock crane, truck crane, toy tower "
+        "crane, building crane"
     ),
     material="steel",
     kind=choice(

@@ -40,7 +40,7 @@ def lever_handle(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "mortise lock",
-    words="rim lock, latch lock, dead lock, spring latch, night latch",
+    words="rim lock, latch lock, dead lock, spring latch, night latch, deadbolt, door lock",
     size=length(0.8, 1.2),
 )
 def mortise_lock(b: ObjectBuilder, size: float) -> None:
@@ -76,7 +76,7 @@ def mortise_lock(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "portcullis",
-    words="castle gate, sluice gate, flood gate",
+    words="castle gate",
     width=length(1.2, 3.0),
     height=length(1.5, 3.0),
 )
@@ -152,7 +152,7 @@ def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
 @kind(
     "cat litter box",
     walls=4,
-    words="litter box, litter tray, pet carrier, cat carrier",
+    words="litter box, litter tray",
     width=length(0.35, 0.55),
 )
 def litter_box(b: ObjectBuilder, width: float) -> None:
@@ -277,7 +277,7 @@ def picture_frame(b: ObjectBuilder, width: float, height: float) -> None:
 
 @kind(
     "extension table",
-    words=("extending table, extendable table, dining table with extension, telescopic table, pull out table"),
+    words="extending table, extendable table, dining table with extension, telescopic table, pull out table",
     width=length(1.0, 1.8),
     depth=length(0.7, 1.0),
 )
@@ -322,7 +322,7 @@ def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
 
 @kind(
     "adjustable headrest chair",
-    words="airline seat row, train seat, bus seat, gaming seat, car seat with a headrest",
+    words="airline seat row, train seat, bus seat, gaming seat, car seat with a headrest, car seat, airplane seat",
     size=length(0.9, 1.1),
 )
 def passenger_seat(b: ObjectBuilder, size: float) -> None:
@@ -543,7 +543,7 @@ def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
 
 @kind(
     "birdcage",
-    words="bird cage, parrot cage, aviary, budgie cage",
+    words="bird cage, parrot cage, budgie cage",
     width=length(0.3, 0.6),
     height=length(0.45, 0.9),
 )

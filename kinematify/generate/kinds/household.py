@@ -346,7 +346,7 @@ def urn(b: ObjectBuilder, radius: float, height: float) -> None:
 
 @kind(
     "window blind",
-    words="venetian blind, roller blind, window shade, roller shade",
+    words="venetian blind, blinds",
     width=length(0.5, 1.2),
     number=whole(2, 40, default=6, usual=(4, 9), words="slat"),
 )
@@ -398,7 +398,7 @@ def tower_fan(b: ObjectBuilder, height: float, radius: float) -> None:
 
 @kind(
     "wood stove",
-    words="wood burner, log burner, iron stove, pellet stove, stove with a glass door",
+    words="wood burner, log burner, iron stove, pellet stove, stove with a glass door, wood burning stove",
     width=length(0.4, 0.7),
     height=length(0.6, 1.0),
 )

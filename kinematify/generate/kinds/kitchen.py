@@ -211,7 +211,7 @@ def apple_peeler(b: ObjectBuilder, size: float) -> None:
     b.hinge("arm", parent="base", axis=Z, pivot=p(-0.1, 0.02, 0.02), upper=0.8, lower=0)
 
 
-@kind("teapot", words="tea pot, coffee jug, pitcher with lid", radius=length(0.06, 0.1))
+@kind("teapot", words="tea pot, coffee jug, pitcher with lid, coffee pot", radius=length(0.06, 0.1))
 def teapot(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -327,7 +327,7 @@ def spice_rack(b: ObjectBuilder, number: int) -> None:
     b.spin("rack", parent="base", axis=Z, pivot=(0, 0, 0))
 
 
-@kind("kitchen timer", words="wind up timer, cooking timer", radius=length(0.03, 0.05))
+@kind("kitchen timer", words="wind up timer, cooking timer, timer", radius=length(0.03, 0.05))
 def kitchen_timer(b: ObjectBuilder, radius: float) -> None:
     b.part("base", b.cone(radius, 0.9 * radius, (0, 0, 0), (0, 0, 0.4 * radius)), color="white")
     b.part(
@@ -547,7 +547,7 @@ def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) ->
 
 @kind(
     "cooktop",
-    words="hob, gas hob, hot plate, burner, stove top, camping stove, gas burner, portable stove",
+    words="hob, gas hob, hot plate, burner, stove top, camping stove, gas burner, portable stove, electric hob",
     number=whole(1, 6, words="knob, burner, dial"),
 )
 def cooktop(b: ObjectBuilder, number: int) -> None:
@@ -571,7 +571,7 @@ def cooktop(b: ObjectBuilder, number: int) -> None:
 
 @kind(
     "chest freezer",
-    words="ice cream freezer, deep freezer, ice chest",
+    words="ice cream freezer, deep freezer",
     width=length(0.6, 1.4),
     depth=length(0.5, 0.7),
     height=length(0.7, 0.9),
@@ -762,7 +762,7 @@ def shower_cabin(b: ObjectBuilder, width: float, height: float) -> None:
 
 @kind(
     "bathtub",
-    words="bath tub, walk in bathtub, bath",
+    words="bath tub, walk in bathtub, bath, tub",
     length=length(1.3, 1.7),
     width=length(0.65, 0.8),
     height=length(0.5, 0.6),
@@ -989,7 +989,7 @@ def hair_straightener(b: ObjectBuilder, length: float) -> None:
     b.hinge("other_arm", parent="arm", axis=-Y, pivot=(-0.005, 0, 0.023), upper=0.35)
 
 
-@kind("safety razor", words="wet razor, disposable razor", length=length(0.1, 0.14))
+@kind("safety razor", words="wet razor, disposable razor, razor, shaving razor", length=length(0.1, 0.14))
 def safety_razor(b: ObjectBuilder, length: float) -> None:
     b.part(
         "handle",

@@ -450,7 +450,10 @@ def syringe_pump(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "operating table",
-    words=("surgery table, massage table, treatment table, exam bed, dissection table, tattoo bed, physiotherapy bed"),
+    words=(
+        "surgery table, massage table, treatment table, exam bed, dissection table, tattoo bed, physiotherapy bed, "
+        "examination table, exam table"
+    ),
     height=length(0.7, 0.85),
 )
 def operating_table(b: ObjectBuilder, height: float) -> None:

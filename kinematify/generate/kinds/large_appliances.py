@@ -29,10 +29,9 @@ if TYPE_CHECKING:
 @kind(
     "oven",
     words=(
-        "stove, cooker, range, kitchen stove, range cooker, gas stove, gas oven, electric stove, cooking "
-        "range, gas cooker, kitchen range, gas range, pizza oven, baking oven, electric oven, bread oven, "
-        "stone oven, wood fired oven, wood burning stove, electric cooker, gas stove oven, induction stove, "
-        "masonry heater"
+        "stove, cooker, range, kitchen stove, range cooker, gas stove, gas oven, electric stove, cooking range, gas "
+        "cooker, kitchen range, gas range, pizza oven, baking oven, electric oven, bread oven, stone oven, electric "
+        "cooker, gas stove oven, induction stove"
     ),
     title="oven or stove",
     material="metal",
@@ -305,7 +304,7 @@ def dishwasher(
 
 @kind(
     "fridge",
-    words=("refrigerator, freezer, fridge freezer, icebox, cooler, minibar, mini fridge, kitchen fridge, wine cooler"),
+    words="refrigerator, freezer, fridge freezer, icebox, minibar, mini fridge, kitchen fridge, wine cooler",
     material="metal",
     width=length(0.4, 1.5, default=0.6, usual=(0.55, 0.9), help="Outer width."),
     height=length(0.5, 2.4, default=1.7, usual=(1.3, 2.0), help="Outer height."),
@@ -413,8 +412,8 @@ def fridge(
 @kind(
     "washing machine",
     words=(
-        "washer, dryer, tumble dryer, laundry machine, clothes washer, front loading washer, front loading "
-        "washing machine, front loader, toy washing machine, laundry washer"
+        "washer, dryer, tumble dryer, laundry machine, clothes washer, front loading washer, front loading washing "
+        "machine, toy washing machine, laundry washer, clothes dryer, tumble drier"
     ),
     material="metal",
     part_words={"door": "round door, porthole"},
@@ -527,8 +526,8 @@ def washing_machine(
 @kind(
     "safe",
     words=(
-        "strongbox, strong box, vault, safe box, money safe, bank safe, office safe, home safe, hotel room "
-        "safe, gun safe, wall safe, hotel safe"
+        "strongbox, strong box, safe box, money safe, bank safe, office safe, home safe, hotel room safe, gun safe, "
+        "wall safe, hotel safe"
     ),
     usual={"gun safe, wall safe, hotel safe": {"width": 0.4, "depth": 0.4, "height": 0.5}},
     material="steel",

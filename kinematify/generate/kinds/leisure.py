@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @kind(
     "toy train",
-    words="locomotive, wooden train, toy locomotive, train engine",
+    words="wooden train, toy locomotive",
     length=length(0.12, 0.3),
     width=length(0.04, 0.08),
     radius=length(0.012, 0.025),
@@ -105,7 +105,7 @@ def pull_along_animal(b: ObjectBuilder, size: float) -> None:
             )
 
 
-@kind("jointed doll", words="doll, puppet, toy doll, marionette", size=length(0.1, 1.0))
+@kind("jointed doll", words="doll, puppet, toy doll, marionette, mannequin", size=length(0.1, 1.0))
 def articulated_doll(b: ObjectBuilder, size: float) -> None:
     """Arms, legs and a head on a torso."""
     g = b.gap(0.05 * size)
@@ -203,7 +203,7 @@ def abacus(b: ObjectBuilder, width: float, number: int) -> None:
 
 @kind(
     "mixing console",
-    words="mixing desk, audio mixer, sound mixer, dj mixer, fader panel, sound board",
+    words="mixing desk, audio mixer, sound mixer, dj mixer, fader panel, sound board, mixer console, dj controller",
     width=length(0.3, 0.9),
     depth=length(0.25, 0.45),
     number=whole(1, 16, default=3, usual=(2, 5), words="fader, channel, slider"),
@@ -315,7 +315,7 @@ def printer(b: ObjectBuilder, width: float, depth: float, height: float) -> None
 
 @kind(
     "desktop computer",
-    words="computer, personal computer, computer case, pc tower, pc, computer tower",
+    words="computer, personal computer, computer case, pc tower, pc, computer tower, pc case",
     width=length(0.17, 0.22),
     depth=length(0.4, 0.5),
     height=length(0.38, 0.5),
@@ -403,7 +403,7 @@ def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
     z=length(0.45, 0.6),
 )
 def dentist_chair(b: ObjectBuilder, z: float) -> None:
-    """A seat on a column, a back, a head rest that slides, a lamp on an arm."""
+    """A seat on a column, a back, a head rest that slides."""
     b.part(
         "foot",
         box((-0.3, -0.25, 0), (0.4, 0.25, 0.05)),
@@ -471,7 +471,7 @@ def garage_door(b: ObjectBuilder, width: float, height: float, lift: bool) -> No
 
 @kind(
     "sash window",
-    words="sliding window, hung window, vertical sliding window",
+    words="sliding window, hung window, vertical sliding window, double hung window",
     width=length(0.6, 1.2),
     height=length(0.9, 1.5),
     flat=yes(0.5),
@@ -672,7 +672,7 @@ def solar_tracker(b: ObjectBuilder, size: float) -> None:
     b.hinge("panel", parent="head", axis=X, pivot=c, upper=0.5, lower=-0.6, ajar=False)
 
 
-@kind("flower press", words="book press, screw press, cheese press", width=length(0.15, 0.35), z=length(0.02, 0.05))
+@kind("flower press", words="book press", width=length(0.15, 0.35), z=length(0.02, 0.05))
 def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
     """Two boards on screws with wing nuts: the upper board slides, the nuts turn."""
     b.part(
@@ -704,7 +704,7 @@ def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
 
 @kind(
     "piano",
-    words="upright piano, pianola, player piano, harpsichord, clavichord",
+    words="upright piano, pianola, player piano, clavichord, toy piano",
     title="upright piano",
     part_words={"lid": "fallboard, keyboard lid, key cover, cover", "key": "white key, piano key"},
     details={"leg": 2},
@@ -753,7 +753,7 @@ def piano(b: ObjectBuilder, keys: int) -> None:
 
 @kind(
     "grand piano",
-    words="baby grand piano, concert piano, concert grand, wing piano",
+    words="baby grand piano, concert piano, concert grand, wing piano, harpsichord",
     part_words={"lid": "top, wing, cover", "key": "white key, piano key"},
     details={"leg": 3},
     keys=whole(7, 52, default=28, words="key, white key", help="White keys."),

@@ -23,14 +23,11 @@ if TYPE_CHECKING:
 @kind(
     "tool cart",
     words=(
-        "tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart, cart, trolley, "
-        "utility cart, medical cart, hospital cart, crash cart, cleaning cart, workshop cart, tool trolley cart, "
-        "drinks trolley, dessert cart, food cart, hot dog cart, ice cream cart, mail cart, book cart, library "
-        "cart, av cart, tv cart, projector cart, laptop cart, computer cart, instrument trolley, surgical "
-        "trolley, surgical cart, medicine trolley, medication cart, janitor cart, housekeeping cart, linen cart, "
-        "hotel cart, airline trolley, rolling cart, roll cart, craft cart, art cart, equipment cart, dish cart, "
-        "drinks cart, service cart, service trolley, tool wagon, office drawer unit, roll container, mobile "
-        "pedestal, rolling drawer unit, rolling pedestal"
+        "tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart, cart, medical "
+        "cart, hospital cart, crash cart, workshop cart, tool trolley cart, instrument trolley, surgical trolley, "
+        "surgical cart, medicine trolley, medication cart, airline trolley, roll cart, craft cart, art cart, tool "
+        "wagon, office drawer unit, mobile pedestal, roll container, rolling drawer unit, rolling pedestal, "
+        "rolling tool chest, rolling cabinet, instrument cart, drawer cart, drawer trolley"
     ),
     width=length(0.55, 0.8),
     depth=length(0.4, 0.5),
@@ -85,9 +82,7 @@ def tool_cart(b: ObjectBuilder, width: float, depth: float, height: float) -> No
         caster(b, f"caster_{k}", parent="cabinet", top=(x, y, z), high=z)
 
 
-@kind(
-    "press", words="arbor press, hydraulic press, punch press, workshop press, stamping press", height=length(0.35, 0.6)
-)
+@kind("press", words="arbor press, workshop press", height=length(0.35, 0.6))
 def press(b: ObjectBuilder, height: float) -> None:
     """An arbor press: a ram and a lever."""
     b.part(
@@ -266,7 +261,8 @@ def control_box(b: ObjectBuilder, width: float, height: float, depth: float, row
 @kind(
     "fuse box",
     words=(
-        "breaker box, electrical panel, breaker panel, electric meter box, distribution board, circuit breaker panel"
+        "breaker box, electrical panel, breaker panel, electric meter box, distribution board, circuit breaker "
+        "panel, switchboard"
     ),
     width=length(0.2, 0.4),
     height=length(0.25, 0.5),
@@ -482,7 +478,9 @@ def conveyor(b: ObjectBuilder, number: int, width: float, size: float) -> None:
 
 @kind(
     "gear train",
-    words="gears, gearbox, set of gears, gear wheels, spur gears, gear pair, pair of gears, reduction gear",
+    words=(
+        "gears, gearbox, set of gears, gear wheels, spur gears, gear pair, pair of gears, reduction gear, cogwheels"
+    ),
     number=whole(2, 4, words="gear, wheel, cog"),
     radius=length(0.03, 0.08),
 )

@@ -132,7 +132,7 @@ def rotary_phone(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "boombox",
-    words=("cassette recorder, cassette player, tape recorder, cd player, radio, transistor radio, portable radio"),
+    words="cassette recorder, cassette player, tape recorder, cd player, radio, transistor radio, portable radio",
     width=length(0.4, 0.6),
 )
 def boombox(b: ObjectBuilder, width: float) -> None:
@@ -225,7 +225,7 @@ def game_controller(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "joystick",
-    words="flight stick, control stick",
+    words="flight stick, control stick, arcade stick, fight stick",
     height=length(0.14, 0.22),
 )
 def joystick(b: ObjectBuilder, height: float) -> None:
@@ -741,7 +741,7 @@ def visor_helmet(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "tablet stand",
-    words="phone stand, phone holder, book holder, cookbook stand",
+    words="phone stand, phone holder, book holder, cookbook stand, tablet holder",
     size=length(0.9, 1.3),
 )
 def tablet_stand(b: ObjectBuilder, size: float) -> None:

@@ -64,7 +64,7 @@ def dutch_door(b: ObjectBuilder, width: float, height: float, thickness: float) 
 
 @kind(
     "floor hatch",
-    words="hatch, trapdoor, trap door, roof hatch, deck hatch, attic hatch",
+    words="hatch, trapdoor, trap door, roof hatch, deck hatch, attic hatch, loft hatch",
     width=length(0.5, 1.0),
     depth=length(0.5, 0.9),
     high=length(0.02, 0.06),

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 @kind(
     "swing seat",
-    words=("garden swing seat, hollywood swing, canopy swing, swing bench, glider chair, hanging chair"),
+    words=(
+        "garden swing seat, hollywood swing, canopy swing, swing bench, glider chair, hanging chair, porch glider, "
+        "porch swing"
+    ),
     part_words={"seat": "bench, swing"},
     details={"roof": 1, "frame": 1},
     width=length(1.2, 2.0),
@@ -238,7 +241,7 @@ def porthole(b: ObjectBuilder, radius: float) -> None:
         ],
         material="brass",
     )
-    b.bore("frame", b.cylinder(0.04 * r, (-1.33 * r, -0.12 * r, -r), (-1.33 * r, -0.12 * r, r)))
+    b.bore("frame", b.cylinder(0.05 * r, (-1.33 * r, -0.12 * r, -r), (-1.33 * r, -0.12 * r, r)))
     b.part(
         "window",
         b.cylinder(1.12 * r, (0, -0.18 * r, 0), (0, -0.04 * r, 0)),
@@ -268,19 +271,18 @@ def puppet_theatre(b: ObjectBuilder, width: float) -> None:
     b.part(
         "stage",
         box((-w, 0, 0), (w, 0.3, 0.4 * width)),
-        [box((s * w * 0.93 - 0.07 * w, 0, 0.3 * width), (s * w * 0.93 + 0.07 * w, 0.03, 1.1 * width)) for s in (-1, 1)],
+        [box((x - 0.07 * w, 0, 0.3 * width), (x + 0.07 * w, 0.03, 1.1 * width)) for x in (-0.93 * w, 0.93 * w)],
         box((-w, 0, 0.95 * width), (w, 0.03, 1.2 * width)),
         b.cylinder(0.008, (-0.9 * w, 0.05, 0.97 * width), (0.9 * w, 0.05, 0.97 * width)),
-        [box((s * 0.95 * w - 0.03, 0.02, 0.96 * width), (s * 0.95 * w + 0.03, 0.06, 0.985 * width)) for s in (-1, 1)],
+        [box((x - 0.03, 0.02, 0.96 * width), (x + 0.03, 0.06, 0.985 * width)) for x in (-0.95 * w, 0.95 * w)],
         material="wood",
     )
     for k, s in enumerate((-1, 1)):
+        left, right = sorted((s * 0.005, s * 0.45 * w))
         b.part(
             f"curtain_{k + 1}",
-            box(
-                (min(s * 0.005, s * 0.45 * w), 0.04, 0.42 * width), (max(s * 0.005, s * 0.45 * w), 0.06, 0.955 * width)
-            ),
-            [b.torus(0.012, 0.003, (s * x * w, 0.05, 0.968 * width), X) for x in (0.08, 0.25, 0.4)],
+            box((left, 0.04, 0.42 * width), (right, 0.06, 0.97 * width - 0.012)),
+            [b.torus(0.013, 0.003, (s * x * w, 0.05, 0.97 * width), X) for x in (0.08, 0.25, 0.4)],
             color="red",
         )
         b.slide(f"curtain_{k + 1}", parent="stage", axis=s * X, upper=0.4 * w)
@@ -325,7 +327,7 @@ def bread_slicer(b: ObjectBuilder, size: float) -> None:
         material="metal",
         color="white",
     )
-    b.bore("body", b.cylinder(0.01 * size, p(-1, 0, 0.15), p(1, 0, 0.15)))
+    b.bore("body", b.cylinder(0.012 * size, p(-1, 0, 0.15), p(1, 0, 0.15)))
     b.part(
         "blade",
         b.cylinder(0.1 * size, p(0.008, 0, 0.15), p(0.012, 0, 0.15)),

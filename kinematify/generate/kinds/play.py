@@ -157,7 +157,7 @@ def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "weight bench",
-    words="bench press, training bench, sit up bench, barbell rack",
+    words="bench press, training bench, sit up bench",
     size=length(0.9, 1.1),
 )
 def weight_bench(b: ObjectBuilder, size: float) -> None:
@@ -504,7 +504,7 @@ def bass_drum(b: ObjectBuilder, radius: float) -> None:
 
 @kind(
     "synthesizer",
-    words="electronic keyboard, keytar, midi keyboard, music keyboard",
+    words="electronic keyboard, keytar, midi keyboard, music keyboard, digital piano, electric piano, stage piano",
     number=whole(7, 12, words="key"),
 )
 def synthesizer(b: ObjectBuilder, number: int) -> None:

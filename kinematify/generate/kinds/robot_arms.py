@@ -143,8 +143,8 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
 @kind(
     "gantry",
     words=(
-        "three axis gantry, gantry robot, cartesian robot, portal, cnc machine, milling machine, cnc router, "
-        "laser cutter, laser engraver, pick and place machine, pen plotter, gantry crane, overhead crane"
+        "three axis gantry, gantry robot, cartesian robot, cnc machine, milling machine, cnc router, laser cutter, "
+        "laser engraver, pick and place machine, pen plotter, gantry crane, overhead crane"
     ),
     title="three-axis gantry",
     material="metal",

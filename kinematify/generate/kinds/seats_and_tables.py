@@ -56,27 +56,27 @@ def drawer_stacks(text: str) -> list[int]:
 @kind(
     "cabinet",
     words=(
-        "cupboard, wardrobe, closet, chest, chest of drawers, dresser, sideboard, nightstand, bedside table, "
-        "drawer unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, wall unit, tv "
-        "stand, tv unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, vitrine, "
-        "armoire, drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, apothecary chest, "
-        "apothecary cabinet, card catalogue, card catalog, kitchen island, aquarium stand, fish tank stand, media "
-        "console, media cabinet, media unit, hi-fi stand, bar cabinet, liquor cabinet, wine cabinet, curio "
-        "cabinet, china cabinet, hutch, gun cabinet, linen cabinet, key cabinet, wall cabinet, spice cabinet, "
-        "vanity unit, washstand, sink unit, changing table, baby changing table, night table, end table, night "
-        "stand, printer stand, plant stand, garderobe, linen closet, tv bench, tv lowboard, lowboard, "
-        "entertainment center, entertainment unit, media bench, tallboy dresser, lingerie chest, map cabinet, "
-        "buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink cabinet, vanity "
-        "cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy cabinet, craft cabinet, "
-        "larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, display "
-        "case, gym locker, school locker, tool locker, parcel locker, pie safe, desk organiser, organizer, "
-        "organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent calendar, tea cabinet, sewing "
-        "cabinet, puzzle box, seed box, switch cabinet, electrical cabinet, lateral file, lateral filing cabinet, "
-        "file drawer cabinet, rolling tool chest, rolling cabinet, tool storage cabinet, charging station, "
-        "charging cabinet, switchgear, plc cabinet, evidence locker, meat locker, proofing cabinet, wall "
-        "cupboard, overhead cabinet, overhead locker, overhead cupboard, kitchen block, row of kitchen units, "
-        "kitchen counter, kitchenette, medicine cabinet, mirror cabinet, bathroom cabinet, first aid cabinet, "
-        "desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer"
+        "cupboard, wardrobe, closet, chest, chest of drawers, dresser, sideboard, nightstand, bedside table, drawer "
+        "unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, wall unit, tv stand, tv "
+        "unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, vitrine, armoire, drawer "
+        "cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, apothecary chest, apothecary "
+        "cabinet, card catalogue, card catalog, kitchen island, aquarium stand, fish tank stand, media console, "
+        "media cabinet, media unit, hi-fi stand, bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china "
+        "cabinet, hutch, gun cabinet, linen cabinet, key cabinet, wall cabinet, spice cabinet, vanity unit, "
+        "washstand, sink unit, changing table, baby changing table, night table, end table, night stand, printer "
+        "stand, garderobe, linen closet, tv bench, tv lowboard, lowboard, entertainment center, entertainment unit, "
+        "media bench, tallboy dresser, lingerie chest, map cabinet, buffet, storage cabinet, utility cabinet, base "
+        "cabinet, sink cabinet, under sink cabinet, vanity cabinet, bathroom vanity, chemical cabinet, lab cabinet, "
+        "record cabinet, toy cabinet, craft cabinet, larder, pantry cupboard, broom closet, broom cupboard, trophy "
+        "case, trophy cabinet, showcase, display case, gym locker, school locker, tool locker, parcel locker, pie "
+        "safe, desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, tea "
+        "cabinet, sewing cabinet, switch cabinet, electrical cabinet, lateral file, lateral filing cabinet, file "
+        "drawer cabinet, tool storage cabinet, charging cabinet, switchgear, plc cabinet, evidence locker, proofing "
+        "cabinet, wall cupboard, overhead cabinet, overhead locker, overhead cupboard, kitchen block, row of "
+        "kitchen units, kitchen counter, kitchenette, medicine cabinet, mirror cabinet, bathroom cabinet, first aid "
+        "cabinet, desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer, map chest, plan "
+        "chest, bookshelf, bedside cabinet, kitchen cabinet, kitchen cupboard, bathroom cupboard, display cabinet, "
+        "office cabinet"
     ),
     title="cabinet or chest",
     material="wood",
@@ -88,7 +88,7 @@ def drawer_stacks(text: str) -> list[int]:
             "wall": 0.006,
             "layout": "3*(2*drawer)",
         },
-        "medicine cabinet, mirror cabinet, bathroom cabinet, first aid cabinet": {
+        "medicine cabinet, mirror cabinet, bathroom cabinet, first aid cabinet, bathroom cupboard": {
             "width": 0.55,
             "height": 0.6,
             "depth": 0.16,
@@ -109,7 +109,13 @@ def drawer_stacks(text: str) -> list[int]:
             "doors": 2,
             "drawers": 0,
         },
-        "nightstand, bedside table": {"width": 0.45, "height": 0.55, "depth": 0.4, "doors": 0, "drawers": 2},
+        "nightstand, bedside table, bedside cabinet": {
+            "width": 0.45,
+            "height": 0.55,
+            "depth": 0.4,
+            "doors": 0,
+            "drawers": 2,
+        },
         "wardrobe, armoire, closet": {"width": 1.0, "height": 2.0, "depth": 0.6, "doors": 2, "drawers": 0},
         "sideboard, credenza": {"width": 1.6, "height": 0.8, "depth": 0.45, "doors": 3, "drawers": 0},
         "chest of drawer, dresser, drawer unit, commode": {"doors": 0, "drawers": 4},
@@ -117,7 +123,7 @@ def drawer_stacks(text: str) -> list[int]:
         "apothecary chest, apothecary cabinet, card catalogue, card catalog": {"doors": 0, "drawers": 6},
         "kitchen island": {"width": 1.4, "height": 0.9, "depth": 0.7},
         "locker": {"width": 0.35, "height": 1.8, "doors": 1, "drawers": 0},
-        "bookcase": {"width": 0.8, "height": 1.8, "depth": 0.35, "doors": 2, "drawers": 0, "shelves": 2},
+        "bookcase, bookshelf": {"width": 0.8, "height": 1.8, "depth": 0.35, "doors": 2, "drawers": 0, "shelves": 2},
         "tv stand, tv unit": {"width": 1.6, "height": 0.5, "depth": 0.45, "doors": 3, "drawers": 0},
         "aquarium stand, fish tank stand, media console, media cabinet, media unit, hi-fi stand": {
             "width": 0.9,
@@ -143,7 +149,7 @@ def drawer_stacks(text: str) -> list[int]:
             "doors": 0,
             "drawers": 2,
         },
-        "night table, end table, night stand, printer stand, plant stand": {
+        "night table, end table, night stand, printer stand": {
             "width": 0.5,
             "height": 0.55,
             "depth": 0.4,
@@ -158,7 +164,7 @@ def drawer_stacks(text: str) -> list[int]:
             "doors": 0,
             "drawers": 2,
         },
-        "tallboy dresser, lingerie chest, map cabinet": {
+        "tallboy dresser, lingerie chest, map cabinet, map chest, plan chest": {
             "width": 0.9,
             "height": 0.9,
             "depth": 0.45,
@@ -173,10 +179,13 @@ def drawer_stacks(text: str) -> list[int]:
             "larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, "
             "display case, gym locker, school locker, tool locker, parcel locker, pie safe"
         ): {"width": 0.8, "height": 1.8, "depth": 0.4, "doors": 2, "drawers": 0},
-        (
-            "organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent "
-            "calendar, tea cabinet, sewing cabinet, puzzle box, seed box"
-        ): {"width": 0.35, "height": 0.25, "depth": 0.25, "doors": 0, "drawers": 3},
+        "organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, tea cabinet, sewing cabinet": {
+            "width": 0.35,
+            "height": 0.25,
+            "depth": 0.25,
+            "doors": 0,
+            "drawers": 3,
+        },
         "switch cabinet, electrical cabinet": {
             "width": 0.5,
             "height": 0.7,
@@ -192,14 +201,14 @@ def drawer_stacks(text: str) -> list[int]:
             "doors": 0,
             "drawers": 4,
         },
-        "rolling tool chest, rolling cabinet, tool storage cabinet": {
+        "tool storage cabinet": {
             "width": 0.7,
             "height": 0.9,
             "depth": 0.45,
             "doors": 0,
             "drawers": 5,
         },
-        "charging station, charging cabinet": {
+        "charging cabinet": {
             "width": 0.6,
             "height": 2,
             "depth": 0.8,
@@ -207,7 +216,7 @@ def drawer_stacks(text: str) -> list[int]:
             "drawers": 0,
             "material": "steel",
         },
-        "switchgear, plc cabinet, evidence locker, meat locker, proofing cabinet": {
+        "switchgear, plc cabinet, evidence locker, proofing cabinet": {
             "width": 0.5,
             "height": 1.6,
             "depth": 0.6,
@@ -303,17 +312,16 @@ def cabinet(
 @kind(
     "table",
     words=(
-        "desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, writing "
-        "table, school table, reading desk, entrance table, counter, work table, dining table, lab bench, "
-        "cocktail table, sofa table, tea table, hallway table, entry table, sewing table, potting bench, school "
-        "desk, chess table, occasional table, conference table, meeting table, kitchen table, breakfast table, "
-        "bistro table, poker table, lab table, laboratory table, examination table, packing table, welding table, "
-        "prep table, butcher block, train table, play table, altar, laboratory bench, carpenter bench, "
-        "woodworking bench, workshop bench, tool bench, work bench, garden table, gaming desk, student desk, art "
-        "desk, craft table, sewing desk, teacher desk, kids desk, children desk, kids table, reception table, "
-        "nail table, makeup table, bathroom table, drawer table, table with a drawer, table with drawers, hall "
-        "table, dressing table, vanity table, console table with drawers, desk with pedestal, pedestal desk, "
-        "computer desk, office desk"
+        "desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, writing table, "
+        "school table, reading desk, entrance table, counter, work table, dining table, lab bench, cocktail table, "
+        "sofa table, tea table, hallway table, entry table, sewing table, potting bench, school desk, chess table, "
+        "occasional table, conference table, meeting table, kitchen table, breakfast table, poker table, lab table, "
+        "laboratory table, packing table, welding table, prep table, butcher block, train table, play table, "
+        "laboratory bench, carpenter bench, woodworking bench, workshop bench, tool bench, work bench, garden "
+        "table, gaming desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children "
+        "desk, kids table, reception table, nail table, makeup table, bathroom table, drawer table, table with a "
+        "drawer, table with drawers, hall table, dressing table, vanity table, console table with drawers, desk "
+        "with pedestal, pedestal desk, computer desk, office desk, desk with drawers"
     ),
     usual={
         "desk with pedestal, pedestal desk, computer desk, office desk": {
@@ -326,10 +334,9 @@ def cabinet(
         "hallway table, entry table, sewing table, potting bench": {"width": 1, "depth": 0.4, "height": 0.8},
         "school desk, chess table, occasional table": {"width": 0.7, "depth": 0.5, "height": 0.7},
         (
-            "conference table, meeting table, kitchen table, breakfast table, bistro table, poker table, lab "
-            "table, laboratory table, examination table, packing table, welding table, prep table, butcher block, "
-            "train table, play table, altar, laboratory bench, carpenter bench, woodworking bench, workshop "
-            "bench, tool bench, work bench, garden table"
+            "conference table, meeting table, kitchen table, breakfast table, poker table, lab table, laboratory "
+            "table, packing table, welding table, prep table, butcher block, train table, play table, laboratory "
+            "bench, carpenter bench, woodworking bench, workshop bench, tool bench, work bench, garden table"
         ): {"width": 1.6, "depth": 0.8, "height": 0.75},
         (
             "gaming desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children "

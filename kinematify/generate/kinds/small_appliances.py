@@ -127,8 +127,8 @@ def toaster(
 @kind(
     "coffee machine",
     words=(
-        "coffee maker, espresso machine, coffeemaker, coffee brewer, coffee pot, espresso maker, filter "
-        "coffee machine, drip coffee maker, coffee brewing machine"
+        "coffee maker, espresso machine, coffeemaker, coffee brewer, espresso maker, filter coffee machine, drip "
+        "coffee maker, coffee brewing machine"
     ),
     material="plastic",
     width=length(0.16, 0.8, default=0.22, usual=(0.18, 0.3), help="Outer width."),
@@ -302,8 +302,8 @@ def coffee_machine(
         "ceiling fan, overhead fan": {"kind": "ceiling"},
     },
     words=(
-        "ventilator, blower, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, usb fan, "
-        "electric fan, ceiling fan, overhead fan"
+        "ventilator, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, usb fan, electric fan, "
+        "ceiling fan, overhead fan"
     ),
     material="plastic",
     kind=choice(
@@ -451,9 +451,9 @@ def fan(
 @kind(
     "desk lamp",
     words=(
-        "lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light, study lamp, "
-        "bedside lamp, drawing lamp, drafting lamp, led lamp, magnifying lamp, piano lamp, anglepoise lamp, "
-        "workshop lamp"
+        "lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light, study lamp, bedside "
+        "lamp, drawing lamp, drafting lamp, led lamp, magnifying lamp, piano lamp, anglepoise lamp, workshop lamp, "
+        "table light, reading light, bedside light"
     ),
     material="metal",
     part_words={"arm": "arm segment, segment"},

@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 @kind(
     "scissors",
     words=(
-        "pair of scissors, shears, pair of shears, kitchen scissors, garden shears, pruning shears, hedge "
-        "shears, hedge clippers, secateurs, tin snips, paper scissors, nail scissors, poultry shears, grass "
-        "shears, bandage scissors, surgical scissors, sewing scissors, hair scissors, craft scissors, kids "
-        "scissors, herb scissors"
+        "pair of scissors, kitchen scissors, paper scissors, nail scissors, kitchen shears, fabric shears, "
+        "poultry shears, bandage scissors, surgical scissors, sewing scissors, hair scissors, craft scissors, kids "
+        "scissors, herb scissors, office scissors, fabric scissors"
     ),
     title="pair of scissors",
     material="steel",
@@ -82,9 +81,9 @@ def scissors(b: ObjectBuilder, length: float, blade: float, thick: float, loops:
 @kind(
     "pliers",
     words=(
-        "pair of pliers, combination pliers, pincers, pair of pincers, wire cutters, wire cutter, side "
-        "cutter, nippers, wire stripper, crimping pliers, cutting pliers, bolt cutter, bolt cutters, cable "
-        "cutter, lineman pliers, long nose pliers, electrician pliers"
+        "pair of pliers, combination pliers, pincers, pair of pincers, wire cutters, wire cutter, side cutter, "
+        "nippers, wire stripper, crimping pliers, cutting pliers, cable cutter, lineman pliers, long nose pliers, "
+        "electrician pliers, needle nose pliers"
     ),
     title="pair of pliers",
     material="steel",
@@ -351,8 +350,8 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
 @kind(
     "clock",
     words=(
-        "wall clock, kitchen clock, station clock, table clock, analog clock, watch, alarm clock, wristwatch, "
-        "pocket watch, desk clock, office clock, school clock, hallway clock, mantel clock"
+        "wall clock, kitchen clock, station clock, table clock, analog clock, alarm clock, desk clock, office "
+        "clock, school clock, hallway clock, mantel clock"
     ),
     material="plastic",
     part_words={"hand": "hour hand, minute hand, second hand"},

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 @kind(
     "tray rack",
     walls=8,
-    words="rack of trays, baking rack, tray trolley, map chest, plan chest, bakery rack, letter tray",
+    words="rack of trays, baking rack, tray trolley, bakery rack, letter tray",
     width=length(0.2, 0.7),
     depth=length(0.25, 0.6),
     height=length(0.1, 1.5),

@@ -304,7 +304,7 @@ def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
     b.part(
         "frame",
         box((-2.2 * r, 0.05 * r, -2 * r), (4.2 * r, 0.25 * r, 2 * r)),
-        [box((x - 0.2 * r, -1 * r, -0.35 * r), (x + 0.2 * r, 0.06 * r, 0.35 * r)) for x in (3.6 * r,)],
+        box((3.4 * r, -r, -0.35 * r), (3.8 * r, 0.06 * r, 0.35 * r)),
         material="steel",
         color="grey",
     )
@@ -333,13 +333,13 @@ def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
     b.slide("yoke", parent="frame", axis=X, upper=r, lower=-r)
     b.part("slider", box((-0.165 * r, -0.78 * r, 0.8 * r), (0.165 * r, -0.57 * r, 1.2 * r)), material="brass")
     b.cut("slider", b.cylinder(0.105 * r, (0, -r, r), (0, 0, r)))
-    b.slide("slider", parent="yoke", axis=-Z, upper=2.02 * r, lower=-0.02 * r)
+    b.slide("slider", parent="yoke", axis=-Z, upper=2.01 * r, lower=-0.01 * r)
     b.close("slider", parent="crank", pivot=(0, -0.68 * r, r))
 
 
 @kind(
     "rack and pinion",
-    words=("rack and pinion gear, gear rack, steering rack, rack and pinion steering, steering gear"),
+    words="rack and pinion gear, gear rack, steering rack, rack and pinion steering, steering gear",
     radius=length(0.02, 0.05),
 )
 def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
@@ -430,8 +430,8 @@ def bevel_gears(b: ObjectBuilder, radius: float) -> None:
         "frame",
         box((-1.6 * r, -1.2 * r, -2 * r), (1.2 * r, 1.2 * r, -1.8 * r)),
         box((-1.8 * r, -1.2 * r, -2 * r), (-1.6 * r, 1.2 * r, 0.9 * r)),
-        b.cylinder(0.2 * r, (0, 0, -1.81 * r), (0, 0, -1 * r)),
-        b.cylinder(0.2 * r, (-1.61 * r, 0, 0), (-1 * r, 0, 0)),
+        b.cylinder(0.2 * r, (0, 0, -1.81 * r), (0, 0, -r)),
+        b.cylinder(0.2 * r, (-1.61 * r, 0, 0), (-r, 0, 0)),
         material="steel",
         color="grey",
     )
@@ -446,7 +446,7 @@ def bevel_gears(b: ObjectBuilder, radius: float) -> None:
     b.part(
         "gear_1",
         b.cone(0.95 * r, 0.45 * r, (-r - 0.03 * r, 0, 0), (-0.53 * r, 0, 0)),
-        b.cylinder(0.35 * r, (-1.5 * r, 0, 0), (-1 * r, 0, 0)),
+        b.cylinder(0.35 * r, (-1.5 * r, 0, 0), (-r, 0, 0)),
         material="brass",
     )
     b.cut("gear_1", b.cylinder(0.22 * r, (-3 * r, 0, 0), (-0.95 * r, 0, 0)))
@@ -852,7 +852,7 @@ def lead_screw(b: ObjectBuilder, length: float) -> None:
 
 @kind(
     "pump jack",
-    words="oil pump jack, beam engine, oil pump, nodding donkey",
+    words="oil pump jack, oil pump, nodding donkey",
     size=length(0.5, 1.5),
 )
 def pump_jack(b: ObjectBuilder, size: float) -> None:

@@ -33,7 +33,9 @@ def _windows(d: ObjectBuilder, lower: Point, upper: Point) -> Sequence[Manifold]
 @kind(
     "box car",
     walls=38,
-    words="car, automobile, toy car, sedan, passenger car, hatchback",
+    words=(
+        "car, automobile, toy car, sedan, passenger car, hatchback, taxi, police car, suv, station wagon, estate car"
+    ),
     length=length(2.5, 4.5),
     width=length(1.4, 1.9),
     radius=length(0.25, 0.35),

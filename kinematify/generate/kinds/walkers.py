@@ -167,8 +167,8 @@ def hexapod(
 @kind(
     "humanoid",
     words=(
-        "humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, wind up "
-        "robot, robot figure, action figure, mannequin, robot man, toy humanoid"
+        "humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, wind up robot, "
+        "robot figure, action figure, robot man, toy humanoid"
     ),
     title="robot with arms and legs",
     material="plastic",

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 @kind(
     "platform cart",
-    words="platform truck, flatbed cart, platform trolley, transport cart, luggage cart, luggage trolley",
+    words=(
+        "platform truck, flatbed cart, platform trolley, transport cart, luggage cart, luggage trolley, trolley, "
+        "flatbed trolley, warehouse trolley"
+    ),
     width=length(0.35, 0.7),
     depth=length(0.5, 1.1),
     radius=length(0.03, 0.1),
@@ -146,7 +149,9 @@ def folding_table(b: ObjectBuilder, width: float, depth: float, height: float, t
 
 @kind(
     "tilting screen",
-    words="monitor, computer monitor, screen, display, television, tv, flat screen, computer screen",
+    words=(
+        "monitor, computer monitor, screen, display, television, tv, flat screen, computer screen, pc monitor, tv set"
+    ),
     width=length(0.15, 1.2),
     height=length(0.12, 0.7),
     thickness=length(0.01, 0.06),

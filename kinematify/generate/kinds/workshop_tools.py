@@ -268,14 +268,14 @@ def band_saw(b: ObjectBuilder, height: float) -> None:
         material="steel",
     )
     b.cut("table", box((0.03, -0.2, 0.4), (0.09, 0.14, 0.5)))
-    b.cut("frame", box((0.0999, 0, 0.44), (0.15, 0.2, 0.48)))
+    b.cut("frame", box((0.097, 0, 0.42), (0.145, 0.2, 0.48)))
     b.part("frame", box((0.145, 0.03, 0.4), (0.17, 0.12, 0.45)))
     b.hinge("table", parent="frame", axis=Y, pivot=(0.12, 0, 0.44), upper=0.05, lower=-0.02)
     leaf(
         b,
         "door",
         parent="frame",
-        lower=(-0.29, 0 - 0.07, 0.01),
+        lower=(-0.29, -0.07, 0.01),
         upper=(0.29, -0.052, 0.39),
         hinge=-X,
         out=-Y,
@@ -288,7 +288,7 @@ def band_saw(b: ObjectBuilder, height: float) -> None:
         box((0.04, 0.05, 0.75 * height), (0.1, 0.068, 0.75 * height + 0.05)),
         material="metal",
     )
-    b.slide("guide", parent="frame", axis=-Z, upper=0.12)
+    b.slide("guide", parent="frame", axis=-Z, upper=0.125 * height)
 
 
 @kind(
@@ -570,7 +570,7 @@ def micrometer(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "dial indicator",
-    words="dial gauge, pressure gauge, manometer, barometer, thermometer dial, speedometer, gauge",
+    words="dial gauge, pressure gauge, manometer, barometer, thermometer dial, gauge",
     radius=length(0.025, 0.08),
 )
 def dial_indicator(b: ObjectBuilder, radius: float) -> None:
