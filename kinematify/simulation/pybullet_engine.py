@@ -115,11 +115,6 @@ class PybulletBody:
                 self.body, self.indices, [[value] for value in values.tolist()], [[0.0]] * len(values)
             )
 
-    def state(self) -> tuple[list[float], list[float], list[float]]:
-        """Return values, speeds and motor torques of all joints."""
-        states = self.client.getJointStates(self.body, self.indices) or ()
-        return [s[0] for s in states], [s[1] for s in states], [s[3] for s in states]
-
     def forget_contacts(self) -> None:
         """Forget the contacts of earlier configurations.
 
@@ -181,17 +176,10 @@ class PybulletBody:
         found: list[float] = (np.linalg.inv(pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3].tolist()
         return found
 
-    def release(self) -> None:
-        """Switch all motors off, which are on from the start."""
-        for index in self.indices:
-            self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
-
-    def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
-        """Make the links of these pairs (indices in the document) act on each other, or not."""
+    def part(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Let the links of these pairs (indices in the document) pass through each other."""
         for first, second in pairs:
-            self.client.setCollisionFilterPair(
-                self.body, self.body, int(self.link[first]), int(self.link[second]), int(on)
-            )
+            self.client.setCollisionFilterPair(self.body, self.body, int(self.link[first]), int(self.link[second]), 0)
 
 
 def load(mechanism: LeaderMechanism, urdf: Path, *, step: float, itself: bool = True) -> PybulletBody:
@@ -215,7 +203,7 @@ def load(mechanism: LeaderMechanism, urdf: Path, *, step: float, itself: bool = 
         loaded.client.setPhysicsEngineParameter(erp=_PIN_ERP, numSolverIterations=_PIN_ITERATIONS)
         loaded.close_loops()
     if loaded.complete and itself:
-        loaded.act(_welded_pairs(mechanism), on=False)
+        loaded.part(_welded_pairs(mechanism))
     return loaded
 
 
@@ -234,27 +222,6 @@ def load_with_loops(client: int, robot: Robot, urdf: Path) -> int:
     if loaded.complete:
         loaded.close_loops()
     return loaded.body
-
-
-def load_at(
-    client: Client, mechanism: LeaderMechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool
-) -> PybulletBody:
-    """Load a file into a world, its root fixed at a pose.
-
-    Args:
-        client: The world.
-        mechanism: Its tree.
-        urdf: The file, its meshes convex.
-        T_world_root: Shape (4, 4).
-        itself: Links that no joint connects collide with each other.
-
-    Raises:
-        Unloadable: PyBullet cannot.
-    """
-    flags = bullet.URDF_USE_INERTIA_FROM_FILE | (bullet.URDF_USE_SELF_COLLISION if itself else 0)
-    place, turn = T_world_root[:3, 3].tolist(), quaternion_of(T_world_root[:3, :3], real_last=True).tolist()
-    options = {"basePosition": place, "baseOrientation": turn, "useFixedBase": True, "flags": flags}
-    return _loaded(client, mechanism, urdf, **options)
 
 
 def _loaded(client: Client, mechanism: LeaderMechanism, urdf: Path, **options: Any) -> PybulletBody:
@@ -321,7 +288,7 @@ class PybulletWorld:
         self._object = load(mechanism, placed.urdf, step=spec.step, itself=spec.grip is None)
         self.client, self._body = self._object.client, self._object.body
         self.client.setPhysicsEngineParameter(numSolverIterations=spec.iterations, deterministicOverlappingPairs=1)
-        self._object.act(_indices(placed), on=False)
+        self._object.part(_indices(placed))
         names = list(mechanism.joints)
         leaders = [names.index(travel.joint) for travel in mechanism.travels]
         passive = {names.index(name) for name in self._object.passive}
@@ -514,11 +481,11 @@ class PybulletWorld:
 
     def values(self) -> FloatArray:
         """Values of all joints of the object."""
-        return np.array(self._object.state()[0])
+        return _motion(self._object, self._object.indices)[0]
 
     def robot_values(self) -> FloatArray:
         """Values of all joints of the robot."""
-        return np.array(self._arm.loaded.state()[0])
+        return _motion(self._arm.loaded, self._arm.loaded.indices)[0]
 
     def driven(self) -> tuple[FloatArray, FloatArray]:
         """Values and speeds of the robot's joints with motors."""
@@ -594,8 +561,10 @@ class _Robot:
 
     def __init__(self, beside: PybulletBody, placed: PlacedRobot, grip: Grip | None) -> None:
         """The robot meets the object and the floor; the object stands on the floor."""
-        client, self.placed = beside.client, placed
-        loaded = load_at(client, placed.mechanism, placed.urdf, placed.T_world_root, itself=grip is None)
+        client, self.placed, T = beside.client, placed, placed.T_world_root
+        flags = bullet.URDF_USE_INERTIA_FROM_FILE | (bullet.URDF_USE_SELF_COLLISION if grip is None else 0)
+        at = {"basePosition": T[:3, 3].tolist(), "baseOrientation": quaternion_of(T[:3, :3], real_last=True).tolist()}
+        loaded = _loaded(client, placed.mechanism, placed.urdf, useFixedBase=True, flags=flags, **at)
         self.loaded, joints = loaded, dict(zip(placed.mechanism.joints, loaded.indices, strict=True))
         self.driven = [joints[name] for name in placed.driven]
         self.wanted = self.led = np.zeros(len(self.driven))
@@ -647,7 +616,7 @@ def _indices(placed: PlacedModel) -> list[tuple[int, int]]:
 
 def _motion(body: PybulletBody, joints: list[int]) -> tuple[FloatArray, FloatArray]:
     """Values and speeds of joints."""
-    states = body.client.getJointStates(body.body, joints)
+    states = body.client.getJointStates(body.body, joints) or ()
     return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
 
