@@ -9,7 +9,7 @@ from lxml import etree
 from kinematify.errors import DescriptionError
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.urdf_numbers import UrdfDocument
-from kinematify.robot.urdf_text import parse_description
+from kinematify.robot.urdf_text import child_of, parse_description
 from kinematify.validation.document import malformed_fields
 from kinematify.validation.finding import Severity
 from kinematify.validation.validated_file import DocumentCopy
@@ -37,13 +37,12 @@ _MIMICS = ("KV127", "KV128")
 _NO_LIMIT = "KV136"
 
 
-def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -> DocumentCopy | None:
+def readable_copy(request: StageRequest, errors: Iterable[Finding]) -> DocumentCopy | None:
     """Write a copy that can be read in spite of errors of file and meshes; None where one of them forbids it.
 
     Args:
         request: Names the document, where packages lie, and the folder.
         errors: Findings that keep the document from being read.
-        name: Of the copy in the folder of the run.
     """
     try:
         robot = parse_description(request.urdf)
@@ -73,31 +72,26 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
             return None  # nobody knows where its link stands
         lacking.add(str(field.joint or field.link))
         joints |= _drop_number(robot, field)
-    path = request.work / name
+    path = request.work / "readable.urdf"
     _write_resolved(robot, request, path)
     return DocumentCopy(path=path, lacking=frozenset(lacking | joints), joints=frozenset(joints))
 
 
-def resolved_copy(request: StageRequest, name: str, left_out: Iterable[Finding]) -> Path:
+def resolved_copy(request: StageRequest, left_out: Iterable[Finding]) -> Path:
     """Write a copy that engines open wherever packages lie: absolute paths, which MuJoCo is set to keep whole.
 
     Args:
         request: Names the document, where packages lie, and the folder.
         left_out: Findings of `LEFT_OUT`; the copy lacks the shapes that they are about.
-        name: Of the copy in the folder of the run.
     """
     robot = parse_description(request.urdf)
     for finding in left_out:
         if finding.severity is not Severity.NOTE:
             _drop_shapes(robot, finding)
-    extension = robot.find("mujoco")
-    extension = etree.SubElement(robot, "mujoco") if extension is None else extension
-    compiler = extension.find("compiler")
-    compiler = etree.SubElement(extension, "compiler") if compiler is None else compiler
+    compiler = child_of(child_of(robot, "mujoco"), "compiler")
     compiler.set("strippath", "false")
-    if "meshdir" in compiler.attrib:
-        del compiler.attrib["meshdir"]
-    path = request.work / name
+    compiler.attrib.pop("meshdir", "")
+    path = request.work / "resolved.urdf"
     _write_resolved(robot, request, path)
     return path
 

@@ -68,7 +68,7 @@ _ONCE = {
     "collision": ("origin",),
 }
 """What an element has once."""
-_KINEMATICS = ("KV134", "KV137", "KV310", "KV312")
+_KINEMATICS = ("KV134", "KV137", "KV220", "KV310", "KV312")
 """Findings that `JointEdits` looks at."""
 
 

@@ -270,3 +270,9 @@ def _refuse_foreign_tree(path: Path, root: _Element) -> None:
             f"The file {path} is an SRDF, which adds to a URDF and holds no links itself. Give the URDF that belongs "
             "to it."
         )
+
+
+def child_of(element: etree._Element, tag: str) -> etree._Element:
+    """Return the first child of a tag, which is made if there is none."""
+    found = element.find(tag)
+    return etree.SubElement(element, tag) if found is None else found

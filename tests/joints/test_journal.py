@@ -23,14 +23,14 @@ def part(name: str, solid: Manifold) -> Part:
     return Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
 
 
-def journal_of(parent: Manifold, child: Manifold, *, reach: float = 0.003, seed: int = 0) -> Journal | None:
+def journal_of(parent: Manifold, child: Manifold, *, reach: float = 0.003) -> Journal | None:
     assembly = Assembly(parts=(part("parent", parent), part("child", child)), source="test")
     surfaces = part_surfaces(assembly, config=CONFIG.surface)
     graph = build_contact_graph(assembly, surfaces, config=CONFIG.contact, seed=0)
     cache = PartCache(assembly, graph, samples=500, seed=0)
     facing = facing_faces(cache, 0, 1, reach, CONFIG.joints.journal)
     size = float(np.ptp(assembly.parts[1].vertices, axis=0).max())
-    return find_journal(facing, size, CONFIG.joints.journal, seed)
+    return find_journal(facing, size, CONFIG.joints.journal)
 
 
 def test_the_pin_of_a_door_is_found_although_it_is_a_hundredth_of_the_contact() -> None:

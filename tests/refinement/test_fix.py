@@ -48,7 +48,7 @@ def refusals(urdf: Path, engines: Sequence[str]) -> dict[str, str]:
     found = {}
     for engine in engines:
         try:
-            load_file(engine, urdf, "", [])
+            load_file(engine, urdf, "")
         except Unloadable as error:
             if not error.floats:
                 found[engine] = str(error)
@@ -280,6 +280,17 @@ def test_swapped_limits_and_one_beyond_a_contact_are_changed_with_a_diff(tmp_pat
     assert done.exit_status == 0
 
 
+def test_a_range_in_whole_degrees_is_written_in_radians(tmp_path: Path) -> None:
+    model = hinged(tmp_path, '<limit lower="0" upper="90" effort="5" velocity="1"/>', 5.0)
+    assert any("needs --kinematics" in sentence for sentence in fixed(model, tmp_path / "no.urdf").left)
+    done = fixed(model, tmp_path / "out.urdf", kinematics=True)
+    (diff,) = done.diffs
+    assert diff.title == "hinge: the range was in degrees (KV220)"
+    joint = read_robot(done.path).joint_by_name["hinge"]
+    assert (joint.lower, joint.upper) == pytest.approx((0.0, 1.570796), abs=1e-5)
+    assert done.exit_status == 0
+
+
 def test_a_limit_that_would_cripple_a_joint_is_left_with_the_reason(tmp_path: Path) -> None:
     model = hinged(tmp_path, '<limit lower="-1.5" upper="1.5" effort="5" velocity="1"/>', 0.09, -0.09)
     done = fixed(model, tmp_path / "out.urdf", kinematics=True)
@@ -310,7 +321,8 @@ def test_an_axis_that_the_file_omits_is_written(tmp_path: Path) -> None:
         joints=(JointSummary(joint="hinge", kind="revolute", declared_limits=(0.0, 1.5), free_travel=(-1.5, 0.0)),),
     )
     editor = UrdfEditor(model, tmp_path / "out.urdf")
-    assert JointEdits(editor=editor).apply(report, read_robot(model))
+    JointEdits(editor=editor).apply(report, read_robot(model))
+    assert editor.diffs
     assert '<axis xyz="-1.0 0.0 0.0"/>' in editor.diffs[0].lines
     assert read_robot(editor.write()).joint_by_name["hinge"].axis.tolist() == [-1.0, 0.0, 0.0]
 

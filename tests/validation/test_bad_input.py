@@ -163,7 +163,7 @@ def test_a_copy_lacks_the_one_shape_of_a_line_that_is_broken(tmp_path: Path) -> 
     request = StageRequest(
         urdf=path, package_dirs=(), work=tmp_path, settings=load_settings(), selected=frozenset(), deadline=60.0
     )
-    readable = readable_copy(request, [copy], "readable.urdf")
+    readable = readable_copy(request, [copy])
     assert readable is not None
     assert [shape.size for shape in read_robot(readable.path).links[0].collisions] == [(1.0, 1.0, 1.0)]
 

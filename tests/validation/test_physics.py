@@ -7,10 +7,12 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import gymnasium
 import pytest
 import trimesh
 from lxml import etree
 
+from kinematify import validate
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
@@ -536,6 +538,13 @@ def test_one_of_several_parts_of_one_shape_that_differs_is_named(
     assert [(item.pair, f"differ in {says}" in item.message) for item in found] == [
         (("distal_0", "distal_3"), True)
     ] * (says is not None)
+
+
+def test_round_shapes_do_not_say_how_a_joint_stands_to_them() -> None:
+    ant = Path(gymnasium.__file__).parent / "envs/mujoco/assets/ant.xml"
+    report = validate(ant, checks=["KV227"], engines=[])
+    (result,) = (item for item in report.checks if item.check == "KV227")
+    assert result.status is Status.PASS
 
 
 # ---- one digit -----------------------------------------------------------------------------------------------------

@@ -194,7 +194,7 @@ def _repeated(physics: Physics) -> Iterator[tuple[str, Link | Joint, Link | Join
                     break
 
 
-def _shapes(link: Link) -> tuple[object, ...]:
+def _shapes(link: Link) -> tuple[tuple[str, int, bytes], ...]:
     """Size and place in their own frames of the shapes of a link; equal for links of one shape."""
     found = []
     for shape in filter(lambda shape: len(shape.mesh.vertices), link.visuals or link.collisions):
@@ -209,13 +209,12 @@ def _beside(links: Mapping[str, Link], first: Joint, second: Joint) -> Iterator[
     children = [links[joint.child] for joint in (first, second)]
     yield from _inertials(*(child.inertial for child in children))
     yield from _drives(first, second)
+    if not links[first.parent].has_geometry or {kind for kind, *_ in _shapes(children[0])} - {"mesh", "box"}:
+        return  # the frame of what is round stands at any angle about its axis
     frames = [
         [(link.visuals or link.collisions)[0].T_link_shape for link in (links[joint.parent], links[joint.child])]
         for joint in (first, second)
-        if links[joint.parent].has_geometry
     ]
-    if len(frames) < 2:
-        return
     one, other = (
         np.linalg.inv(parent) @ joint.T_parent_child @ child
         for joint, (parent, child) in zip((first, second), frames, strict=True)

@@ -245,7 +245,7 @@ class _Run:
         ]
         if not broken or any(key[0] not in _MESH_GUARDS for key in blocked):
             return None
-        return readable_copy(request, broken, "readable.urdf")
+        return readable_copy(request, broken)
 
     def _ids(self, findings: Iterable[Finding]) -> str:
         return ", ".join(sorted({finding.check for finding in findings})) or "the errors above"
@@ -265,7 +265,7 @@ class _Run:
         """Look at the joints' evidence and at the untouched file in engines, with what exact geometry knows by now."""
         free = {name: joint.free_travel for name, joint in self._joints.items() if joint.free_travel is not None}
         left_out = [item for key, result in self._results.items() if key[0] in LEFT_OUT for item in result.findings]
-        resolved = resolved_copy(replace(request, urdf=readable), "resolved.urdf", left_out) if stages else None
+        resolved = resolved_copy(replace(request, urdf=readable), left_out) if stages else None
         request = replace(request, free_travel=free, resolved=resolved, doubted=self._doubted() if free else None)
         for number, end in enumerate(run_stages(stages, request, workers=workers)):
             self._take_end(end)

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Literal
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import ConfigError, InputError, KinematifyError, OutputError
-from kinematify.manipulation.manipulator import robot_of
-from kinematify.manipulation.plan_request import TaskRequest
 from kinematify.robot.description import form_of
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import CHECKS
@@ -100,6 +98,9 @@ def validate(
     folders = _existing(package_dirs)
     request = None
     if task is not None:
+        from kinematify.manipulation.manipulator import robot_of  # noqa: PLC0415 - geometry loads slowly
+        from kinematify.manipulation.plan_request import TaskRequest  # noqa: PLC0415
+
         request = TaskRequest(
             robot=None if robot is None else Path(robot).absolute(), tool=tool, gripper=tuple(gripper),
             package_dirs=folders, grasp=grasp, base=base, scale=scale,

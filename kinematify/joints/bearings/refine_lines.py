@@ -70,12 +70,10 @@ def refine_lines(
     return lines
 
 
-def refine_line(
-    sides: Sides, line: Line, tolerances: FloatArray, config: BearingConfig, *, turning: bool = True
-) -> Line:
+def refine_line(sides: Sides, line: Line, tolerances: FloatArray, config: BearingConfig) -> Line:
     """`refine_lines` of a single line."""
     lines = Lines(axes=line.axis[None], points=line.point[None])
-    return refine_lines(sides, lines, tolerances, config, turning=turning)[0]
+    return refine_lines(sides, lines, tolerances, config)[0]
 
 
 def sample_spread(sides: Sides) -> float:

@@ -80,18 +80,17 @@ def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config
     return Facing(points=points[keep], normals=normals[keep], areas=areas[keep])
 
 
-def find_journal(facing: Facing, size: float, config: JournalConfig, seed: int = 0) -> Journal | None:
+def find_journal(facing: Facing, size: float, config: JournalConfig) -> Journal | None:
     """Find the line about which the child is held all around over the longest span.
 
     Args:
         facing: Faces that look at the parent.
         size: Largest extent of the child [m].
         config: Tolerances.
-        seed: Of the draws of pairs of neighbouring faces, whose normals propose lines.
     """
     if len(facing.areas) < _LEAST:
         return None
-    axes, pivots, radii = _proposals(facing, config, np.random.default_rng(seed))
+    axes, pivots, radii = _proposals(facing, config, np.random.default_rng(0))
     keep = radii < config.largest * size
     best: Journal | None = None
     for frame, pivot, radius in zip(line_frames(axes[keep]), pivots[keep], radii[keep], strict=True):
