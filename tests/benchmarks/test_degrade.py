@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
 import numpy as np
 import pytest
 import trimesh
@@ -13,8 +12,9 @@ from objects import BUILDERS
 from benchmarks.degrade import DEGRADED, OPEN_REACH, OVER_SEGMENTED, VERTEX_NOISE, DegradedParts, degraded
 from benchmarks.tables import benchmark_blocks
 from kinematify.assembly.part import Assembly, Part
-from kinematify.cli.options import words_of
 from kinematify.config import load_config
+from kinematify.errors import InputError
+from kinematify.evaluation.accuracy import bench
 from kinematify.evaluation.benchmark_job import CLEAN
 from tests.secret_cabinets import request, write_object
 
@@ -123,7 +123,5 @@ def test_every_kind_of_input_is_run_and_has_a_line_of_its_own(tmp_path: Path) ->
 
 
 def test_unknown_faults_are_refused_with_the_known_ones() -> None:
-    with pytest.raises(click.UsageError, match="Known are all, voxels-300"):
-        words_of("gaps,rust", DEGRADED, "--degrade")
-    assert words_of("cut-2, gaps", DEGRADED, "--degrade") == ("gaps", "cut-2")
-    assert words_of("all", DEGRADED, "--degrade") == DEGRADED
+    with pytest.raises(InputError, match="Known are all, voxels-300"):
+        bench("everyday", degrade=["gaps", "rust"])

@@ -208,7 +208,7 @@ def test_usd_collides_with_as_many_pieces_as_the_urdf(carved: Path, tmp_path: Pa
 
 def test_free_model_falls_and_a_fixed_one_does_not(urdf: Path, tmp_path: Path) -> None:
     for free in (False, True):
-        model = mujoco.MjModel.from_xml_path(str(export(urdf, "mjcf", tmp_path / "model.xml", free=free).path))
+        model = mujoco.MjModel.from_xml_path(str(export(urdf, "mjcf", tmp_path / f"{free}.xml", free=free).path))
         data = mujoco.MjData(model)
         mujoco.mj_step(model, data, 100)
         assert (data.body("world_link").xpos[2] < -0.1) == free
@@ -345,8 +345,8 @@ def test_formats_and_files_that_cannot_be_are_refused(
         export(urdf, "usd", tmp_path / "model.txt")
     with pytest.raises(OutputError, match=r"model\.xml"):
         export(urdf, "mjcf", tmp_path / "model.mjcf")
-    with pytest.raises(OutputError, match="folder that exists"):
-        export(urdf, "mjcf", tmp_path / "nowhere" / "model.xml")
+    with pytest.raises(OutputError, match=r"model\.urdf"):
+        export(urdf, "mjcf", urdf / "model.xml")
     assert run(["export", str(urdf), "--to", "glb", "-o", str(tmp_path / "m.glb"), "--free"]) == 2
     assert "--free" in capsys.readouterr().err
     assert run(["export", str(tmp_path / "none.urdf"), "--to", "mjcf", "-o", str(tmp_path / "m.xml")]) == 2
@@ -405,5 +405,5 @@ def test_bullet_puts_a_ball_into_the_hollow_of_an_exported_tray(urdf: Path, tmp_
 def test_export_never_writes_over_the_model_that_it_reads(urdf: Path) -> None:
     before = urdf.read_bytes()
     with pytest.raises(InputError, match="the model itself"):
-        export(urdf, "urdf", urdf)
+        export(urdf, "urdf", urdf, overwrite=True)
     assert urdf.read_bytes() == before

@@ -43,7 +43,7 @@ def test_each_family_has_a_picture_a_row_and_its_parameters(made):
     for family in (all_kinds()["gripper"], all_kinds()["laptop"]):
         row = next(line for line in page.splitlines() if line.startswith(f"| `{family.name}` |"))
         assert all(f"`{parameter.name}`" in row for parameter in family.parameters)
-    assert all(item.title in page for item in all_kinds().values())
+    assert all(item.title in page for name, item in all_kinds().items() if name not in FAMILIES)
 
 
 def test_pictures_are_small_and_show_two_states(made):

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.cli.asking import asked_question, infer_command
 from kinematify.robot.read import read_robot
 from kinematify.robot.vectors import box_around
+from kinematify.vision.piece_question import asked_question, infer_command
 from tests.browser import opened, wait_until
 from tests.one_mesh import write_bin_with_lid
 from tests.view.pages import PATIENCE, mistakes, press
