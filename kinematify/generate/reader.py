@@ -75,6 +75,8 @@ _PHRASES = {
 _PHRASE = "|".join(f"(?P<{name}>{pattern})" for name, pattern in _PHRASES.items())
 _LIMIT = ".*?(?=[,hWRLbPpiY]|(?<!#)o|(?<!g)S(?=[^,]))"
 """Where the name of the whole ends at the latest."""
+_TOY = 0.6
+"""A toy is no larger [m]."""
 Match = re.Match[str]
 _OPPOSITE = {"left": "right", "right": "left"}
 
@@ -817,6 +819,9 @@ class Sentence:
                 columns, rows = (lines or len(names) for lines in thing.grid or (1, 1))
                 if thing.grid and not stands_in(made.blueprint, names, columns, rows):
                     listed.append(f"{noun}: columns and rows are not {columns} and {rows}")
+        low, high = made.blueprint.assembly.bounds
+        if "toy" in self.text.lower().split() and (largest := float((high - low).max())) > _TOY:
+            listed.append(f"toy: it is {largest:.2g} m large")
         own = self.own | {key for part in made.blueprint.parts for key in key_of(part.name.replace("_", " "))}
         return replace(
             made,

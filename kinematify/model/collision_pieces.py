@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.pieces import connected_pieces
-from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume
+from kinematify.geometry.convex import ConvexPiece, convex_piece
 from kinematify.geometry.cut import Concave, CutSurface
 from kinematify.geometry.cut_cache import cached_cuts
 from kinematify.geometry.scene import judged_shapes
@@ -65,8 +65,6 @@ class Pieces:
     method: Method
     gap: float
     """How far the pieces reach beyond the declared surface at most [m]."""
-    volume_error: float | None
-    """Volume of the pieces over that of the declared meshes, less one; None where they enclose none."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -200,16 +198,7 @@ def _pieces(link: Link, parts: Sequence[tuple[_Component, list[ConvexPiece] | No
         convex=tuple(convex),
         method=max(methods, key=_EFFORT.index),
         gap=max(gaps),
-        volume_error=_volume_error(shapes, convex),
     )
-
-
-def _volume_error(shapes: Sequence[Shape], convex: Sequence[ConvexPiece]) -> float | None:
-    volumes = [enclosed_volume(shape.mesh.vertices, shape.mesh.faces) for shape in shapes if shape.kind not in _KEPT]
-    known = [volume for volume in volumes if volume is not None]
-    if not known or len(known) < len(volumes):
-        return None
-    return sum(piece.volume for piece in convex) / sum(known) - 1.0
 
 
 _NEIGHBOURS = 8

@@ -121,6 +121,7 @@ def test_a_slip_of_the_pen_is_repaired_with_a_word():
 def test_sizes_toys_and_shares_of_parts_are_read_as_they_are_written():
     assert read_sentence("a desk 1400x700mm").request.size["width"] == pytest.approx(1.4)
     assert read_sentence("a dump truck toy, yellow").request.kind == "dump_truck"
+    assert read_sentence("a toy excavator").made().differences[-1].startswith("toy: it is ")
     gate = read_sentence("a garden gate, two leaves, seven vertical pickets per leaf")
     assert gate.request.parts["leaf"].count == 2
     assert gate.made().unread

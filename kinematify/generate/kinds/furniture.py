@@ -19,10 +19,7 @@ if TYPE_CHECKING:
 
 @kind(
     "sideboard with sliding doors",
-    words=(
-        "sliding door sideboard, sliding door cabinet, sliding door wardrobe, sliding wardrobe, wardrobe with "
-        "sliding doors"
-    ),
+    words="sliding door sideboard, sliding door cabinet",
     width=length(1.0, 2.0),
     height=length(0.5, 0.9),
     depth=length(0.35, 0.5),
