@@ -31,13 +31,14 @@ STAMP := $(VENV)/.setup-$(SUM)
 TOOK = echo "make $@ took $$(( $$(date +%s) - $(START) )) s"
 START := $(shell date +%s)
 
-.PHONY: help setup demo test goldens check lint format types bench docs pictures clean
+.PHONY: help setup demo test goldens nightly-smoke check lint format types bench docs pictures clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo     one sentence -> URDF -> verdict, and its joints inferred again, in out/cabinet/"
 	@echo "make test     run the tests (ARGS=... for pytest)"
 	@echo "make goldens  compare what the code makes with the committed sample"
+	@echo "make nightly-smoke  a night of two objects, and nights whose planted faults must show"
 	@echo "make check    lint, types and the tests of the packages that differ from BASE=main; for every change"
 	@echo "make lint     ruff: rules and format"
 	@echo "make format   let ruff fix what it can"
@@ -95,6 +96,11 @@ test: setup
 
 goldens: setup
 	OMP_NUM_THREADS=1 $(IN_VENV) benchmarks.goldens check --sample --jobs $(JOBS)
+	@$(TOOK)
+
+nightly-smoke: setup
+	$(IN_VENV) kinematify nightly --smoke
+	$(IN_VENV) pytest -q tests/evaluation/test_nightly.py -k planted
 	@$(TOOK)
 
 check: lint types
