@@ -26,7 +26,6 @@ from kinematify.cli.progress import progress_reporter
 @click.option("-o", "--out", type=click.Path(path_type=Path), required=True, help="Folder of weights and tables.")
 @click.option("--rounds", type=click.IntRange(min=0), default=4, show_default=True, help="Objects of every family.")
 @click.option("--composed", type=click.IntRange(min=0), default=150, show_default=True, help="Random mechanisms.")
-@click.option("--furniture", type=click.IntRange(min=0), default=0, show_default=True, help="Pieces of furniture.")
 @click.option("--packages", is_flag=True, help="Also objects that installed PyPI packages carry.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Draws the generated objects.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
@@ -51,7 +50,6 @@ def command(
     out: Path,
     rounds: int,
     composed: int,
-    furniture: int,
     packages: bool,
     seed: int,
     jobs: int | None,
@@ -75,7 +73,6 @@ def command(
             out,
             rounds=rounds,
             composed=composed,
-            furniture=furniture,
             seed=seed,
             workers=jobs or os.cpu_count() or 1,
             cache=out / "measured",

@@ -20,7 +20,6 @@ from benchmarks.fit.drawn import DRAWN, corpus_kinds, drawn_object
 from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
 from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
 from benchmarks.fit.fragmentation import with_pieces_broken_off
-from benchmarks.fit.furniture import furniture
 from benchmarks.fit.modelling import WAYS, augment
 from kinematify.assembly.erasure import erase
 from kinematify.assembly.part import Assembly
@@ -40,8 +39,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import GroundTruth
     from kinematify.generate.procedural.blueprint import Blueprint
 
-FAMILY, DESCRIBED, PROGRAMMED, COMPOSED, FURNITURE = "family", "described", "programmed", "composed", "furniture"
-GENERATED = (FAMILY, DESCRIBED, PROGRAMMED, COMPOSED, FURNITURE)
+FAMILY, DESCRIBED, PROGRAMMED, COMPOSED = GENERATED = "family", "described", "programmed", "composed"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
@@ -68,13 +66,12 @@ class CorpusSource:
     """With pieces broken off."""
 
 
-def generated_sources(rounds: int, composed: int, furniture: int = 0) -> list[CorpusSource]:
-    """`rounds` objects of every kind, each modelled in another way, `composed` random mechanisms, and furniture."""
+def generated_sources(rounds: int, composed: int) -> list[CorpusSource]:
+    """`rounds` objects of every kind, each modelled in another way, and `composed` random mechanisms."""
     origins = dict.fromkeys(FAMILIES, FAMILY) | dict.fromkeys(DRAWN, PROGRAMMED)
     named = [(origins.get(name, DESCRIBED), name) for name in sorted(corpus_kinds())]
     found = [CorpusSource(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
-    found += [CorpusSource(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
-    return found + [CorpusSource(origin=FURNITURE, name="furniture", number=n) for n in range(furniture)]
+    return found + [CorpusSource(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
 
 
 def real_sources(folder: Path) -> list[CorpusSource]:
@@ -106,7 +103,7 @@ def tree_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
     return [
         source
         for source in sources
-        if not source.broken and (source.number < _TREE_ROUNDS or source.origin in (COMPOSED, FURNITURE))
+        if not source.broken and (source.number < _TREE_ROUNDS or source.origin == COMPOSED)
     ]
 
 
@@ -289,7 +286,7 @@ def _generated(source: CorpusSource, seed: int) -> _Opened:
     if len(blueprint.joints) > _MOST_JOINTS:
         raise ValueError(f"{source.name} has {len(blueprint.joints)} joints, more than {_MOST_JOINTS}.")
     # Random mechanisms have nothing in common: each is a category of its own.
-    category = {COMPOSED: f"{source.name} {number}", FURNITURE: blueprint.family}.get(source.origin, source.name)
+    category = f"{source.name} {number}" if source.origin == COMPOSED else source.name
     return _Opened(
         parts=blueprint.assembly.parts,
         truth=ground_truth(blueprint),
@@ -303,8 +300,6 @@ def _drawn(source: CorpusSource, number: int) -> Blueprint:
     ways = list(WAYS)
     if source.origin == PROGRAMMED:
         return drawn_object(source.name, number)
-    if source.origin == FURNITURE:
-        return furniture(number)
     if source.origin == COMPOSED:
         way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
         return augment(compose(number), way, rng=np.random.default_rng(number))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from benchmarks.fit.categories import category_of
-from benchmarks.fit.corpora import COMPOSED, DESCRIBED, FAMILY, FURNITURE, GENERATED, PROGRAMMED
+from benchmarks.fit.corpora import COMPOSED, DESCRIBED, FAMILY, GENERATED, PROGRAMMED
 from benchmarks.fit.edges import edges_row, fit_edges
 from benchmarks.fit.examples import content_key
 from benchmarks.fit.trees import (
@@ -52,7 +52,6 @@ _GENERATED_SETS = {
     DESCRIBED: "objects that files describe: never fitted to",
     PROGRAMMED: "objects as people program them",
     COMPOSED: "random mechanisms",
-    FURNITURE: "furniture",
 }
 _RIGHT_DEG = 5.0
 _RIGHT = 0.2

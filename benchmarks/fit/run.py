@@ -80,7 +80,6 @@ def run_fit(
     *,
     rounds: int,
     composed: int,
-    furniture: int,
     seed: int,
     workers: int,
     cache: Path,
@@ -96,7 +95,6 @@ def run_fit(
         out: Where the files go.
         rounds: Objects of every generated family.
         composed: Random mechanisms.
-        furniture: Pieces of furniture.
         seed: Draws the generated objects.
         workers: Processes at a time.
         cache: Folder of what was measured and of held-out fits, so that an interrupted run goes on.
@@ -112,14 +110,13 @@ def run_fit(
         InputError: There is nothing to fit to.
         EnvironmentFault: LightGBM is not installed.
     """
-    sources = generated_sources(rounds, composed, furniture)
-    sources += [source for folder in folders for source in real_sources(folder)]
+    sources = generated_sources(rounds, composed) + [source for folder in folders for source in real_sources(folder)]
     sources = [source for source in sources if source.origin != DESCRIBED or DESCRIBED_SET not in skip]
     sources += [] if FIXED_HEAD in skip else broken_sources(sources)
     examples = gather_examples(sources, cache, seed=seed, workers=workers, progress=progress)
     of_trees = [] if EDGES_HEAD in skip else tree_sources(sources)
     trees = gather_trees(of_trees, cache / "trees", seed=seed, workers=workers, progress=progress)
-    drawn = {"seed": seed, "rounds": rounds, "composed": composed, "furniture": furniture, "per_category": per_category}
+    drawn = {"seed": seed, "rounds": rounds, "composed": composed, "per_category": per_category}
     examples = with_spares(examples, per_category)
     return fit_and_judge(examples, trees, out, drawn=drawn, held_out=hold_out, skip=skip, progress=progress)
 
@@ -232,8 +229,7 @@ def as_markdown(report: dict[str, Any]) -> str:
     introduction = (
         f"Fitted to {facts['joints']} joints of {facts['objects']} objects by `python -m benchmarks.fit` "
         f"(seed {facts['seed']}, LightGBM {facts['lightgbm']}): {facts['rounds']} object of each kind of the library, "
-        f"{facts['composed']} random mechanisms, {facts['furniture']} pieces of furniture{real}. The true tree is "
-        "given. Held out by category: the fit had no "
+        f"{facts['composed']} random mechanisms{real}. The true tree is given. Held out by category: the fit had no "
         "object and no family of the category, and one seed; with its source: it had nothing of the sets that have "
         "this row. Weights before: what shipped until this fit, which has seen other objects. In-sample: these "
         "weights have seen what is called fitted to. Errors: no right joint was "

@@ -12,7 +12,6 @@ from benchmarks.fit.categories import ALIKE
 from benchmarks.fit.corpora import gather_examples, generated_sources
 from benchmarks.fit.cross_validation import cause_of
 from benchmarks.fit.drawn import corpus_kinds
-from benchmarks.fit.furniture import ORDER, furniture
 from benchmarks.fit.run import run_fit
 from kinematify.joints.choice.scorer import WEIGHTS
 
@@ -45,27 +44,6 @@ def test_what_is_right_has_no_cause_and_what_is_wrong_one(tmp_path: Path) -> Non
     assert cause_of(replace(example, right=np.zeros_like(example.right)), 0) == "none proposed"
 
 
-def test_furniture_has_one_joint_above_every_part_but_its_body() -> None:
-    for number in range(len(ORDER)):
-        piece = furniture(number)
-        assert piece.parts[0].name == "body"
-        assert [joint.child for joint in piece.joints] == [part.name for part in piece.parts[1:]], piece.name
-        known = {"body"}
-        for joint in piece.joints:
-            assert joint.parent in known, piece.name
-            known.add(joint.child)
-
-
-def test_a_door_of_furniture_hangs_at_an_edge_of_its_panel() -> None:
-    piece = furniture(ORDER.index("fridge"))
-    doors = [(part, piece.joint_above[part.name]) for part in piece.parts if part.name.startswith("door")]
-    assert doors
-    for door, joint in doors:
-        across = np.linalg.norm(np.cross(door.vertices - joint.pivot, joint.axis), axis=1)
-        assert across.min() < 0.06
-        assert across.max() > 0.3
-
-
 def test_categories_name_recipes_and_families_once_and_no_category_is_of_another() -> None:
     named = [name for names in ALIKE.values() for name in names]
     assert len(named) == len(set(named))
@@ -82,7 +60,6 @@ def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path
             out,
             rounds=0,
             composed=4,
-            furniture=0,
             seed=0,
             workers=1,
             cache=tmp_path / "cache",
