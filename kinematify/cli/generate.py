@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import complete_categories, examples, say, scale_option
+from kinematify.cli.options import complete_categories, examples, preview_option, say, scale_option, validation_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -124,15 +124,8 @@ def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
 @click.option("--force", "overwrite", is_flag=True, help="Replace OUT if it is a model folder.")
-@click.option("--no-preview", "preview", is_flag=True, flag_value=False, default=True, help="Write no picture.")
-@click.option(
-    "--no-validation",
-    "validation",
-    is_flag=True,
-    flag_value=False,
-    default=True,
-    help="Skip the validation, which takes most of the time.",
-)
+@preview_option
+@validation_option
 @json_option
 def command(*, words: tuple[str, ...], schema: str | None, listing: bool, json_to: str | None, **given: Any) -> int:
     """Build what a sentence, a request or a blueprint asks for, with its exact joints, and validate it.

@@ -17,7 +17,15 @@ from kinematify.cli.inferred import (
     validation_answer,
     validation_status,
 )
-from kinematify.cli.options import examples, pieces_option, scale_option, up_option, vlm_option
+from kinematify.cli.options import (
+    examples,
+    pieces_option,
+    preview_option,
+    scale_option,
+    up_option,
+    validation_option,
+    vlm_option,
+)
 from kinematify.cli.progress import progress_reporter
 from kinematify.errors import ExitStatus
 
@@ -106,15 +114,8 @@ def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[s
     help="Which pieces are one moving part, as a person or a chat answered `kinematify question`.",
 )
 @click.option("--force", "overwrite", is_flag=True, help="Replace OUT if it is a model folder.")
-@click.option("--no-preview", "preview", is_flag=True, flag_value=False, default=True, help="Write no picture.")
-@click.option(
-    "--no-validation",
-    "validation",
-    is_flag=True,
-    flag_value=False,
-    default=True,
-    help="Do not check the model or load it into engines.",
-)
+@preview_option
+@validation_option
 @json_option
 def command(*, out: Path, json_to: str | None, **given: Any) -> int:
     """Infer the joints of ASSEMBLY and write OUT, a folder with a URDF and its meshes.
@@ -138,13 +139,13 @@ def command(*, out: Path, json_to: str | None, **given: Any) -> int:
         from kinematify.vision.infer_object import infer
     with progress_reporter() as progress:
 
-        def told(stage: str, done: float) -> None:
+        def show(stage: str, done: float) -> None:
             if stage.startswith("Lengths: "):  # which stays to be read
                 click.echo(stage, err=True)
             else:
                 progress(stage, done)
 
-        inference = infer(out=out, **given, progress=told)
+        inference = infer(out=out, **given, progress=show)
     asked = inference.vision or {}
     if write_answer({**_as_answer(inference, out), **validation_answer(inference.report)}, json_to):
         blocks = (

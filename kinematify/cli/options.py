@@ -54,6 +54,19 @@ arguments_argument = click.argument("arguments", nargs=-1, metavar="[NAME:=VALUE
 
 force_file_option = click.option("--force", "overwrite", is_flag=True, help="Replace the file of -o if it exists.")
 
+preview_option = click.option(
+    "--no-preview", "preview", is_flag=True, flag_value=False, default=True, help="Write no picture."
+)
+
+validation_option = click.option(
+    "--no-validation",
+    "validation",
+    is_flag=True,
+    flag_value=False,
+    default=True,
+    help="Skip the validation, which takes most of the time.",
+)
+
 sampling_seed_option = click.option(
     "--seed", type=int, help="Seed of the sampled configurations, instead of the configuration's."
 )

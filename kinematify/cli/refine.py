@@ -9,7 +9,7 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.inferred import describe, describe_validation, validation_answer, validation_status
-from kinematify.cli.options import examples
+from kinematify.cli.options import examples, preview_option, validation_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -43,15 +43,8 @@ _HEADINGS = ("part", "what", "before", "after", "why")
     is_flag=True,
     help="Replace OUT if it is a model folder; without -o, the model in FOLDER.",
 )
-@click.option("--no-preview", "preview", is_flag=True, flag_value=False, default=True, help="Write no picture.")
-@click.option(
-    "--no-validation",
-    "validation",
-    is_flag=True,
-    flag_value=False,
-    default=True,
-    help="Do not check the model or load it into engines.",
-)
+@preview_option
+@validation_option
 @json_option
 def command(*, model: Path, out: Path | None, json_to: str | None, **given: Any) -> int:
     """Simulate the model in FOLDER, feed its failures back into the search, and keep the best round.

@@ -95,10 +95,10 @@ def infer(
         OutputError: `out` exists and must not be replaced, or cannot be written.
     """
     chosen, folder = load_config(config, seed=seed), None if out is None else Path(out)
-    told, share = progress or (lambda stage, done: None), 1.0 if folder is None else _INFERRED
+    show, share = progress or (lambda stage, done: None), 1.0 if folder is None else _INFERRED
 
     def report(stage: str, done: float) -> None:
-        told(stage, share * done)
+        show(stage, share * done)
 
     if folder is not None:
         check_output(folder, overwrite=overwrite)
@@ -114,7 +114,7 @@ def infer(
             assembly = load_assembly(
                 assembly, config=chosen.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
             )
-            told(_lengths(assembly), 0.0)
+            show(_lengths(assembly), 0.0)
         parts, vote = _parts(assembly, chosen, report, vlm=vlm, groups=groups, answer=answer)
         names = (parts.assembly if isinstance(parts, Grouping) else parts).names
         model = chosen.model.model_copy(update={"density": density, "masses": _masses(masses or {}, names)})
@@ -136,15 +136,15 @@ def infer(
                 folder,
                 lambda place: write_inference_files(
                     inference, place, preview=preview,
-                    progress=lambda stage, done: told(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
+                    progress=lambda stage, done: show(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
                 ),
                 overwrite=overwrite,
             )  # fmt: skip
         if folder is None or not validation:
             return inference
-        told("checking the geometry and loading the file into engines", _WRITTEN)
+        show("checking the geometry and loading the file into engines", _WRITTEN)
         inference = replace(inference, report=validated(folder / MODEL_FILE))
-        told("done", 1.0)
+        show("done", 1.0)
         return inference
 
 

@@ -62,7 +62,7 @@ def unlike_sides(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Compare the two; write at one what the other one has.
     """
-    told: set[tuple[str, str]] = set()
+    reported: set[tuple[str, str]] = set()
     for whose, *found in (
         ("pairs of left and right", _masses(physics), _joints(physics)),
         ("parts of one shape", _repeated(physics)),
@@ -74,9 +74,9 @@ def unlike_sides(result: OpenCheck, physics: Physics) -> None:
             odd = [pair for pair in pairs if pair[2]]
             for first, second, said in odd if len(pairs) >= (_AGREE + 1) * len(odd) else ():
                 names = [getattr(item, "child", item.name) for item in (first, second)]
-                if (what, names[1]) in told:
+                if (what, names[1]) in reported:
                     continue
-                told |= {(what, name) for name in names}
+                reported |= {(what, name) for name in names}
                 result.find(
                     f"{first.name} and {second.name} differ in {what}: {said}; the other {len(pairs) - len(odd)} "
                     f"{whose} agree in it.",
