@@ -44,7 +44,6 @@ def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple
         'kinematify generate "a chest of drawers, half open" --seed 7 -o out/chest',
         "kinematify generate --blueprint toolbox.yaml -o out/toolbox",
         "kinematify generate --list",
-        "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
         'kinematify generate "a cantilever toolbox" --source llm --budget 60000 -o out/box',
         "kinematify generate --image chair.png --source command --command 'partcrafter {image} {out}' -o out/chair",
     ),
@@ -97,24 +96,23 @@ def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple
 )
 @click.option(
     "--source",
-    type=click.Choice(["rodin", "command", "llm"]),
-    help="Who makes the object: a web service (rodin; key in RODIN_API_KEY), your own program (command), or a language "
-    "model that writes a blueprint (llm; address in KINEMATIFY_LLM_URL).",
+    type=click.Choice(["command", "llm"]),
+    help="Who makes the object: your own program (command), or a language model (llm; address in KINEMATIFY_LLM_URL).",
 )
 @click.option("--command", "program", metavar="WORDS", help="Your program, with {image}, {text}, {seed} and {out}.")
-@click.option("--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Limit of the program or job.")
+@click.option("--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Limit of the program or answer.")
 @click.option(
     "--budget",
     type=click.FloatRange(min=0.0),
-    metavar="CREDITS",
-    help="Refuse a job that is expected to cost more; for llm, start no round after this number of tokens.",
+    metavar="TOKENS",
+    help="Start no round of the language model after this number of tokens.",
 )
 @click.option("--rounds", type=click.IntRange(min=1), metavar="N", help="Most answers of the language model.")
 @click.option(
     "--record", type=click.Path(path_type=Path), metavar="DIR", help="Save answers of the language model for --replay."
 )
 @click.option("--replay", type=click.Path(path_type=Path), metavar="DIR", help="Use what was recorded; send nothing.")
-@click.option("--resend", is_flag=True, help="Repeat steps that failed or have no recorded answer.")
+@click.option("--resend", is_flag=True, help="Repeat questions that have no recorded answer.")
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @scale_option
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to write.")

@@ -23,7 +23,7 @@ from kinematify.config.joint_settings import (
     SweepConfig,
 )
 from kinematify.config.output_settings import CollisionConfig, ModelConfig, PreviewConfig
-from kinematify.config.services import RodinConfig, ServiceConfig, SourcesConfig, VisionConfig
+from kinematify.config.services import ServiceConfig, SourcesConfig, VisionConfig
 from kinematify.config.shapes import (
     AssemblyConfig,
     ContactConfig,
@@ -61,7 +61,6 @@ __all__ = [
     "RailConfig",
     "RailsConfig",
     "RockersConfig",
-    "RodinConfig",
     "SdfConfig",
     "SeamConfig",
     "ServiceConfig",

@@ -16,33 +16,6 @@ class ServiceConfig(StageConfig):
     """Attempts of a request before the network or the service counts as down."""
     answer_seconds: float = 90.0
     """The service has so long to answer a request [s]."""
-    most_bytes: int = 10000000
-    """Larger files are not fetched [bytes]."""
-
-
-class RodinConfig(ServiceConfig):
-    """Hyper3D Rodin and its splitting into parts (BANG), the generator of the paper (section III-A)."""
-
-    longest_pause: float = 15.0  # a job takes about five minutes
-    tries: int = 6
-    answer_seconds: float = 60.0
-    most_bytes: int = 500000000
-    url: str = "https://api.hyper3d.com/api/v2"
-    """Beginning of every address; the variable RODIN_API_URL wins."""
-    tier: str = "Gen-2"
-    """Model that makes the shape."""
-    mesh_mode: str = "Raw"  # quads are of no use to the inference
-    """``Raw`` triangles or ``Quad``."""
-    material: str = "None"  # neither are textures
-    """``PBR``, ``Shaded``, ``All`` or ``None``."""
-    strength: int = 5  # the service's own choice
-    """How finely the shape is split, 2 to 12."""
-    shape_credits: float = 0.5
-    """What a shape is expected to cost."""
-    parts_credits: float = 0.5
-    """What the splitting is expected to cost."""
-    job_seconds: float = 1800.0
-    """A job has so long to be done [s]."""
 
 
 class LanguageModelConfig(ServiceConfig):
@@ -60,7 +33,6 @@ class LanguageModelConfig(ServiceConfig):
 class SourcesConfig(StageConfig):
     """Where parts come from."""
 
-    rodin: RodinConfig = section()
     language_model: LanguageModelConfig = section()
     command_seconds: float = 1800.0  # local generators take minutes, the first time more for their weights
     """A program of the user's has so long [s]."""

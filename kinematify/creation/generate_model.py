@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _INFERRED, _WRITTEN = 0.4, 0.6
 """Shares of the time at which these are done, for five joints that are inferred."""
-_SOURCES = ("rodin", "command", "llm")
+_SOURCES = ("command", "llm")
 _TAKEN_BY: dict[str, tuple[str | None, ...]] = {
     "--category": (None,),
     "--set": (None,),
@@ -36,15 +36,15 @@ _TAKEN_BY: dict[str, tuple[str | None, ...]] = {
     "--blueprint": (None,),
     "--nearest": (None,),
     "--infer": (None, "llm"),
-    "--seed": (None, "rodin", "command"),
+    "--seed": (None, "command"),
     "--image": _SOURCES,
     "--command": ("command",),
     "--time-limit": _SOURCES,
-    "--budget": ("rodin", "llm"),
+    "--budget": ("llm",),
     "--rounds": ("llm",),
     "--record": ("llm",),
     "--replay": ("llm",),
-    "--resend": _SOURCES,
+    "--resend": ("llm",),
 }
 """Options -> the sources that take them; None is the library."""
 
@@ -60,7 +60,7 @@ def generate(
     blueprint: str | Path | None = None,
     seed: int | None = None,
     images: Sequence[str | Path] = (),
-    source: Literal["rodin", "command", "llm"] | None = None,
+    source: Literal["command", "llm"] | None = None,
     program: str | None = None,
     time_limit: float | None = None,
     budget: float | None = None,
@@ -90,14 +90,14 @@ def generate(
         blueprint: What to build, parts and joints in YAML or JSON.
         seed: Draws what is not asked for; the usual values if absent.
         images: Photos of the object, for `source`.
-        source: Who makes the object: a web service, a program, or a language model; the library of kinds if absent.
+        source: Who makes the object: a program, or a language model; the library of kinds if absent.
         program: Its words, for the source ``command``, with ``{image}``, ``{text}``, ``{seed}`` and ``{out}``.
-        time_limit: Of the program, the job or an answer [s].
-        budget: Refuse a job that costs more; for ``llm``, the number of tokens after which no round starts.
+        time_limit: Of the program or an answer [s].
+        budget: Number of tokens after which no round of the language model starts.
         rounds: Most answers of the language model.
         record: Folder that keeps the answers of the language model.
         replay: Such a folder to use; nothing is sent.
-        resend: Repeat steps that failed or have no recorded answer.
+        resend: Repeat questions that have no recorded answer.
         up: Axis that points up in the parts of a source.
         scale: Metres per unit of them.
         strict: Write nothing unless all is as asked for and every word was read.
@@ -144,7 +144,7 @@ def generate(
             answered = written_blueprint(order, report, validation=validation)
             return writer(answered.made, written=answered)
         return made_parts(
-            order, source, report, up=up, scale=scale, overwrite=overwrite, preview=preview, validation=validation
+            order, report, up=up, scale=scale, overwrite=overwrite, preview=preview, validation=validation
         )
 
 

@@ -16,7 +16,6 @@ from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import language_model
-from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import check_prompt
 from kinematify.model.output import MODEL_FILE, write_model_folder
 from kinematify.pipeline.record import write_inference_files
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.generate.delivery import BuildResult
     from kinematify.generate.providers.language_model import Written
-    from kinematify.generate.providers.source import PartSource
 
     Progress = Callable[[str, float], None]
 
@@ -56,24 +54,8 @@ class Order:
     resend: bool
 
 
-def _part_source(name: str, order: Order) -> PartSource:
-    """The generator that is asked for.
-
-    Raises:
-        InputError: There is no program.
-    """
-    limit, chosen = order.time_limit, order.config.sources.rodin
-    if name == "rodin":
-        asked = chosen if limit is None else chosen.model_copy(update={"job_seconds": limit})
-        return RodinSource(asked, order.budget)
-    if order.program is None:
-        raise InputError("--source command needs --command 'program {image} {out}'.")
-    return CommandSource(order.program, limit or order.config.sources.command_seconds)
-
-
 def made_parts(
     order: Order,
-    name: str,
     progress: Progress,
     *,
     up: str,
@@ -82,18 +64,18 @@ def made_parts(
     preview: bool,
     validation: bool,
 ) -> GeneratedModel:
-    """Get the parts of ``rodin`` or ``command``, infer their joints, write the folder and validate the model in it.
+    """Run the program of the user for parts, infer their joints, write the folder and validate the model in it.
 
     Raises:
-        InputError: The prompt, the key or an option cannot be used.
-        EnvironmentFault: The generator failed; the same call goes on where it stopped.
+        InputError: There is no program, or the prompt cannot be used.
+        EnvironmentFault: The program failed.
         OutputError: The folder cannot be written.
     """
-    source = _part_source(name, order)
+    if order.program is None:
+        raise InputError("--source command needs --command 'program {image} {out}'.")
+    source = CommandSource(order.program, order.time_limit or order.config.sources.command_seconds)
     prompt = check_prompt(order.text, order.images, seed=order.seed)
     with open_job(job_folder(order.out), source.name, prompt.digest(source.options())) as job:
-        if order.resend:
-            job.resend()
         parts = source.generate(prompt, job, lambda stage, done: progress(stage, _MADE * done))
     progress("reading the parts", _MADE)
     read = load_assembly(parts.path, config=order.config.assembly, up=up, scale=scale, labels=parts.labels)

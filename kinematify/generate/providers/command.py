@@ -45,12 +45,21 @@ class CommandSource:
         return {"command": self.template}
 
     def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
-        """Run the program unless an earlier call has; see `PartSource`."""
+        """Make the parts: run the program unless an earlier call of the same job has.
+
+        Args:
+            prompt: What to build.
+            job: Folder and state of this request; everything that is made stays in it.
+            progress: Called with what is being done and the share that is done.
+
+        Raises:
+            InputError: The command line cannot be used.
+            EnvironmentFault: The program failed, or left no mesh.
+        """
         arguments = filled(self.template, prompt, job.folder / OUTPUT_FOLDER)
-        if job.state(_STEP) != "done":
-            self._run(arguments, job, progress)
+        seconds = job.facts(_STEP).get("seconds") or self._run(arguments, job, progress)
         path, labels = found_parts(job.folder / OUTPUT_FOLDER)
-        job.finish(_STEP, seconds=job.facts(_STEP).get("seconds"))
+        job.finish(_STEP, seconds=seconds)
         return Generated(
             path=path,
             labels=labels,
@@ -61,12 +70,13 @@ class CommandSource:
                 images=tuple(image.name for image in prompt.images),
                 seed=prompt.seed,
                 licence=self.licence,
-                cost=f"{job.facts(_STEP)['seconds']:.0f} s of this machine",
+                cost=f"{seconds:.0f} s of this machine",
                 details={"command": self.template},
             ),
         )
 
-    def _run(self, arguments: list[str], job: PaidJob, progress: Progress) -> None:
+    def _run(self, arguments: list[str], job: PaidJob, progress: Progress) -> float:
+        """Return how long the program ran [s]."""
         log, out = job.folder / LOG_FILE, job.folder / OUTPUT_FOLDER
         out.mkdir(exist_ok=True)
         start = time.monotonic()
@@ -90,7 +100,7 @@ class CommandSource:
             )
         if status != 0:
             raise EnvironmentFault(f"The program {arguments[0]!r} ended with status {status}. {_end_of(log)}")
-        job.accept(_STEP, seconds=time.monotonic() - start)
+        return time.monotonic() - start
 
     def _waited(self, program: subprocess.Popen[bytes], name: str, start: float, progress: Progress) -> int | None:
         """Exit status, or None if time ran out."""

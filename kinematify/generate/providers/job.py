@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SCHEMA = 1
 STATE_FILE = "job.json"
-SENDING, ACCEPTED, DONE, FAILED = "sending", "accepted", "done", "failed"
+SENDING, DONE = "sending", "done"
 
 
 @dataclass
@@ -59,22 +59,13 @@ class PaidJob:
         self.steps.pop(step, None)
         self._write()
 
-    def accept(self, step: str, **facts: Any) -> None:
-        """Note that the provider has accepted a step."""
-        self._set(step, {"state": ACCEPTED, **facts})
-
     def finish(self, step: str, **facts: Any) -> None:
         """Note that a step is done."""
-        self._set(step, {**self.steps.get(step, {}), "state": DONE, **facts})
-
-    def fail(self, step: str, reason: str) -> None:
-        """Note that the provider gave up on a step."""
-        self._set(step, {**self.steps.get(step, {}), "state": FAILED, "reason": reason})
+        self._set(step, {"state": DONE, **facts})
 
     def resend(self) -> None:
-        """Forget the steps whose fate is unknown or that failed, so that they are sent again."""
-        for step in [step for step, facts in self.steps.items() if facts.get("state") in (SENDING, FAILED)]:
-            del self.steps[step]
+        """Forget the steps whose fate is unknown, so that they are sent again."""
+        self.steps = {step: facts for step, facts in self.steps.items() if facts.get("state") != SENDING}
         self._write()
 
     def _set(self, step: str, facts: dict[str, Any]) -> None:

@@ -194,7 +194,7 @@ class LanguageModel:
             )
         job.begin(digest)
         try:
-            answer = service.pay("/chat/completions", json=request)
+            answer = service.ask("/chat/completions", paid=True, json=request)
         except (InputError, NotTaken):
             job.drop(digest)
             raise

@@ -1,4 +1,4 @@
-"""The protocol of all generators: a prompt goes in, files with segmented meshes and where they come from come out."""
+"""A prompt goes into a generator, files with segmented meshes and where they come from come out."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from PIL import Image, UnidentifiedImageError
 
@@ -15,8 +15,6 @@ from kinematify.errors import EnvironmentFault, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from kinematify.generate.providers.job import PaidJob
 
     Progress = Callable[[str, float], None]
 
@@ -135,33 +133,6 @@ class Generated:
     labels: Path | None
     """Labels per triangle if `path` is one mesh with labels."""
     provenance: Provenance
-
-
-class PartSource(Protocol):
-    """A generator of segmented meshes."""
-
-    @property
-    def name(self) -> str:
-        """Return what jobs of it are called."""
-        ...
-
-    def options(self) -> dict[str, object]:
-        """Return what besides the prompt decides the result: part of the identity of a job."""
-        ...
-
-    def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
-        """Make the parts, going on where an earlier call of the same job was stopped.
-
-        Args:
-            prompt: What to build.
-            job: Folder and state of this request; everything that is made stays in it.
-            progress: Called with what is being done and the share that is done.
-
-        Raises:
-            InputError: The request, the key or the credit is not accepted.
-            EnvironmentFault: The provider or the network failed; the job can be resumed.
-        """
-        ...
 
 
 _PACKED = ".zip"

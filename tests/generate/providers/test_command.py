@@ -171,11 +171,11 @@ def test_prompts_that_make_no_sense_are_refused(tmp_path: Path) -> None:
     ("words", "said"),
     [
         (["--image", "x.png"], "--image needs --source"),
-        (["--text", "a box", "--budget", "3"], "needs --source rodin or llm"),
+        (["--text", "a box", "--budget", "3"], "needs --source llm"),
         (["--source", "command", "--text", "a box"], "needs --command"),
-        (["--source", "rodin", "--text", "a box", "--command", "x {out}"], "--source command"),
-        (["--source", "rodin", "--category", "cabinet"], "cannot be combined with --source rodin"),
-        (["--source", "rodin", "--text", "a box", "--record", "a"], "cannot be combined"),
+        (["--source", "llm", "--text", "a box", "--command", "x {out}"], "--source command"),
+        (["--source", "command", "--category", "cabinet"], "cannot be combined with --source command"),
+        (["--source", "command", "--text", "a box", "--resend"], "it needs --source llm"),
     ],
 )
 def test_options_that_do_not_go_together_end_with_2(

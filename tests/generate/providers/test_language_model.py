@@ -12,7 +12,7 @@ from PIL import Image
 
 from kinematify.cli.app import run
 from kinematify.config import load_config
-from kinematify.errors import EnvironmentFault, InputError
+from kinematify.errors import EnvironmentFault, InputError, OutputError
 from kinematify.generate.procedural.blueprint_file import described_blueprint
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.judge_blueprint import drawn_findings
@@ -167,6 +167,39 @@ def test_a_slow_service_is_not_waited_for_for_ever(server, tmp_path):
     hasty = SETTINGS.model_copy(update={"answer_seconds": 0.2})
     with pytest.raises(EnvironmentFault, match="no answer came"):
         written(LanguageModel(server.url, "tester", chat_server.KEY, hasty), tmp_path)
+
+
+def test_what_may_have_been_paid_is_sent_again_only_on_request(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, chat_server.KEY)
+    server.script = ["drop", lidded()]
+    words = ["generate", "--text", TEXT, "--source", "llm", "--no-preview", "--no-validation"]
+    words += ["-o", str(tmp_path / "a")]
+    assert run(words) == 3
+    assert run(words) == 3
+    assert "--resend" in capsys.readouterr().err
+    assert len(server.requests) == 1
+    assert run([*words, "--resend"]) == 0
+    assert len(server.requests) == 2
+
+
+def test_a_busy_service_is_asked_again(server, tmp_path):
+    server.script = [503, lidded()]
+    assert written(model_at(server), tmp_path).rounds == 1
+    assert len(server.requests) == 2
+
+
+def test_the_job_of_another_request_or_another_process_is_left_alone(tmp_path):
+    again = open_job(tmp_path, "llm", "x")
+    with open_job(tmp_path, "llm", "x") as job:
+        job.begin("step")
+        with pytest.raises(OutputError, match="Another process"), again:
+            pass
+    with pytest.raises(InputError, match="another request"), open_job(tmp_path, "llm", "other"):
+        pass
+    (tmp_path / "job.json").write_text("{", encoding="utf-8")
+    with pytest.raises(InputError, match="no state"), open_job(tmp_path, "llm", "x"):
+        pass
 
 
 def test_no_service_at_all(server, tmp_path):
