@@ -28,7 +28,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.finding import Finding, Severity, Status, not_finished
+from kinematify.validation.finding import Observation, Severity, Status, not_finished
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -143,7 +143,7 @@ class OpenCheck:
     engine: str | None
     source: ValidatedFile | None = None
     """The file, which is written into its findings; None: there is none."""
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[Observation] = field(default_factory=list)
     measured: dict[str, float] = field(default_factory=dict)
     status: Status | None = None
     reason: str | None = None
@@ -171,14 +171,14 @@ class OpenCheck:
     ) -> None:
         """Add a finding.
 
-        Severity, cause and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
-        after which later stages may read the file all the same.
+        Severity, cause and engine are the check's unless given, see `Observation` for the rest; `harmless` is for an
+        error after which later stages may read the file all the same.
         """
         check = REGISTRY[self.id]
         names = [name for name in (joint, link, *(pair or ())) if name is not None]
         message, remedy = (_with_numbers_quoted(text, names) for text in (message, remedy))
         self.is_fatal |= (severity or check.severity) is Severity.ERROR and not harmless
-        finding = Finding(
+        finding = Observation(
             check=self.id,
             severity=severity or check.severity,
             cause=cause or check.cause,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.document import NumberField
-    from kinematify.validation.finding import Finding
+    from kinematify.validation.finding import Observation
     from kinematify.validation.stage import StageRequest
 
 LEFT_OUT = frozenset(("KV140", "KV141", "KV142", "KV150"))
@@ -37,7 +37,7 @@ _MIMICS = ("KV127", "KV128")
 _NO_LIMIT = "KV136"
 
 
-def readable_copy(request: StageRequest, errors: Iterable[Finding]) -> DocumentCopy | None:
+def readable_copy(request: StageRequest, errors: Iterable[Observation]) -> DocumentCopy | None:
     """Write a copy that can be read in spite of errors of file and meshes; None where one of them forbids it.
 
     Args:
@@ -77,7 +77,7 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding]) -> DocumentC
     return DocumentCopy(path=path, lacking=frozenset(lacking | joints), joints=frozenset(joints))
 
 
-def resolved_copy(request: StageRequest, left_out: Iterable[Finding]) -> Path:
+def resolved_copy(request: StageRequest, left_out: Iterable[Observation]) -> Path:
     """Write a copy that engines open wherever packages lie: absolute paths, which MuJoCo is set to keep whole.
 
     Args:
@@ -145,7 +145,7 @@ def _fix_joint(robot: _Element, name: str) -> None:
             _blank(element)
 
 
-def _drop_shapes(robot: _Element, finding: Finding) -> bool:
+def _drop_shapes(robot: _Element, finding: Observation) -> bool:
     """Drop the shape in the line of a finding, and what names the same file in that link; False if none is there."""
     dropped = False
     for link in robot.findall("link"):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import StrEnum
 from fnmatch import fnmatchcase
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
 
 class Severity(StrEnum):
@@ -61,12 +61,13 @@ def is_unfinished(reason: str | None) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
-    """One thing that is wrong, or worth knowing, with where, how much and what to do."""
+class Observation:
+    """One thing that a check saw, with where, how much and what to do; `run/conclusion.py` makes a finding of it."""
 
     check: str
     """Id, e.g. ``KV301``."""
     severity: Severity
+    """By what this check saw alone."""
     cause: Cause
     message: str
     """One or two sentences: what was found and what was expected."""
@@ -88,10 +89,6 @@ class Finding:
     """Line of the URDF that it is about."""
     reproduction: str | None = None
     """Plain Python that shows it in the engine, without Kinematify."""
-    suppressed: str | None = None
-    """Reason given by the user for not counting it; it is still reported."""
-    follows_from: Finding | None = field(default=None, compare=False, repr=False)
-    """Finding that it follows from and is reported under; it has no cause itself."""
 
     def __post_init__(self) -> None:
         if self.q is not None:
@@ -107,8 +104,21 @@ class Finding:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CheckResult:
-    """The outcome of one check in one engine."""
+class Finding(Observation):
+    """One thing that is wrong, or worth knowing: what a check saw, as severe as it is beside all other results."""
+
+    suppressed: str | None = None
+    """Reason given by the user for not counting it; it is still reported."""
+    follows_from: Finding | None = field(default=None, compare=False, repr=False)
+    """Finding that it follows from and is reported under; it has no cause itself."""
+
+
+Told = TypeVar("Told", bound=Observation)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckResult(Generic[Told]):
+    """The outcome of one check in one engine: with observations when the check ends, with findings in a report."""
 
     check: str
     engine: str | None
@@ -117,7 +127,7 @@ class CheckResult:
     reason: str | None = None
     """Why it was skipped, blocked or not finished."""
     seconds: float = 0.0
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[Told, ...] = ()
     measured: Mapping[str, float] = field(default_factory=dict)
     """Named figures worth reading even where nothing is wrong, e.g. the largest tracking error."""
 
@@ -125,14 +135,6 @@ class CheckResult:
     def unfinished(self) -> bool:
         """True if time ran out before it was complete; what it found by then stands."""
         return is_unfinished(self.reason)
-
-    def with_findings(self, findings: Iterable[Finding]) -> CheckResult:
-        """Return the result with its findings judged again: it has not failed if all of them are notes now."""
-        found = tuple(findings)
-        status = self.status
-        if status is Status.FAIL and all(finding.severity is Severity.NOTE for finding in found):
-            status = Status.SKIPPED if self.unfinished else Status.PASS
-        return replace(self, findings=found, status=status)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,7 +147,7 @@ class Suppression:
     where: str = "*"
     """Glob that the joint, the link or one link of the pair must match; ``*`` is anywhere."""
 
-    def covers(self, finding: Finding) -> bool:
+    def covers(self, finding: Observation) -> bool:
         """True if the rule applies to the finding."""
         if not fnmatchcase(finding.check, self.check):
             return False

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from kinematify.validation.finding import CheckResult
+    from kinematify.validation.finding import CheckResult, Observation
     from kinematify.validation.stage import StageRequest
     from kinematify.validation.summary import JointSummary
 
@@ -52,7 +52,7 @@ class Stage:
     """A group of checks that runs in one process."""
 
     name: str
-    run: Callable[[StageRequest, Callable[[CheckResult | JointSummary], None]], object]
+    run: Callable[[StageRequest, Callable[[CheckResult[Observation] | JointSummary], None]], object]
     """What runs in the process and tells each result at once; what it measures with is imported there."""
     checks: tuple[tuple[str, str | None], ...]
     """Every (id, engine) that it tells if nothing goes wrong."""
@@ -67,7 +67,7 @@ class StageEnd:
     """End of a stage."""
 
     stage: Stage
-    results: tuple[CheckResult | JointSummary, ...]
+    results: tuple[CheckResult[Observation] | JointSummary, ...]
     failure: str | None
     """Why it did not end by itself, as words that follow "because"; None if it did."""
     late: bool = False
@@ -132,7 +132,7 @@ def run_stages(
         ahead: Stages of later calls: what they need is loaded while these run.
     """
     load_imports(stages, ahead)
-    results: dict[str, list[CheckResult | JointSummary]] = {stage.name: [] for stage in stages}
+    results: dict[str, list[CheckResult[Observation] | JointSummary]] = {stage.name: [] for stage in stages}
 
     def tasks() -> Iterator[WorkItem[float]]:
         for stage in stages:

@@ -29,20 +29,13 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
 
+    Opening = tuple[float, float]
+    """Width [m], and the value of the joint, zero at rest [rad or m]."""
+
 _LINKAGE = 0.5  # `JointScene.mechanism` from which a pair belongs to a linkage rather than to furniture
 
 _STEPS = 4
 """Places to each side at which the contact is looked at."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Opening:
-    """Opening of half of a contact, where it has opened most."""
-
-    width: float
-    """[m]"""
-    at: float
-    """Value of the joint, zero at rest [rad or m]."""
 
 
 class Contact:
@@ -68,7 +61,7 @@ class Contact:
         return max(len(self._of_child), len(self._of_parent))
 
     def opening(self, kind: JointType, line: Line, lower: float, upper: float) -> Opening:
-        """Return how far half of the contact opens, on the side of the body on which less does.
+        """Return by how much half of the contact opens most, on the side of the body on which less does, and where.
 
         Args:
             kind: Type of the joint.
@@ -80,7 +73,7 @@ class Contact:
         motions = [joint_motion(kind, line.axis, line.point, value) for value in values.tolist()]
         widths = [self._width(T[:3, :3], T[:3, 3]) for T in motions]
         widest = int(np.argmax(widths))
-        return Opening(width=widths[widest], at=float(values[widest]))
+        return widths[widest], float(values[widest])
 
     def _width(self, rotation: FloatArray, shift: FloatArray) -> float:
         of_child = self._grown(self._parent, self._of_child @ rotation.T + shift, self._at_rest[0])
@@ -244,7 +237,7 @@ class JointCase:
     def opens(self) -> bool:
         """The contact opens about the declared line so far that it may do so less about another one."""
         least = min(self.settings.bearing_opens, self.settings.opens, self.settings.opens_across)
-        return self._own is not None and self._own.width > least * self.measures.size
+        return self._own is not None and self._own[0] > least * self.measures.size
 
     @cached_property
     def opened(self) -> tuple[Opening, Opening] | None:
@@ -268,8 +261,8 @@ class JointCase:
         if own is None:
             return None
         lines = [Line(axis=sign * line.best_axis, point=line.best_pivot) for sign in (1.0, -1.0)]
-        other = min(map(self._opening, lines), key=lambda opening: opening.width)
-        clear = own.width - other.width > limit * size and other.width < settings.stays_closed * own.width
+        other = min(map(self._opening, lines), key=lambda opening: opening[0])
+        clear = own[0] - other[0] > limit * size and other[0] < settings.stays_closed * own[0]
         return (own, other) if clear else None
 
     @property

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.description import Description
-    from kinematify.validation.finding import Finding
+    from kinematify.validation.finding import Observation
 
 _OF_LIMITS = ("KV220", "KV801", "KV805")
 """Checks of limits, which a URDF has to state."""
@@ -32,7 +32,7 @@ class DocumentCopy:
     joints: frozenset[str] = frozenset()
     """Joints that are fixed in it."""
 
-    def doubts(self, finding: Finding) -> bool:
+    def doubts(self, finding: Observation) -> bool:
         """True if a finding on the copy may come of what it lacks."""
         return bool({finding.link, finding.joint, *(finding.pair or ())} & self.lacking)
 
@@ -64,7 +64,7 @@ class ValidatedFile:
         named = () if robot is None else (item for tag in ("link", "joint") for item in robot.iterfind(tag))
         return cls(lines={(str(item.tag), item.get("name") or ""): int(str(item.sourceline)) for item in named})
 
-    def in_source(self, finding: Finding) -> Finding | None:
+    def in_source(self, finding: Observation) -> Observation | None:
         """Return a finding as the user reads it; None if it is about the copy or the URDF, and not about the file."""
         if self.copy is not None and finding.engine is None and self.copy.doubts(finding):
             return None

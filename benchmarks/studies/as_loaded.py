@@ -202,7 +202,7 @@ def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = (
     }
 
 
-def _world(checks: Sequence[CheckResult], engine: str, *, run_code: bool) -> Record:
+def _world(checks: Sequence[CheckResult[Finding]], engine: str, *, run_code: bool) -> Record:
     """The judgement of one engine."""
     judged = [check for check in checks if check.check.startswith("KV80") and check.engine == engine]
     measured = {name: value for check in judged for name, value in check.measured.items()}

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.result_record import Report
     from kinematify.pipeline.inference import Inference
-    from kinematify.validation.finding import Finding
+    from kinematify.validation.finding import Observation
 
 SAMPLE = (
     "audibot", "bigym_base_doors", "bigym_base_drawers", "bigym_dishwasher", "bigym_wall_cabinet", "bullet_racecar",
@@ -155,7 +155,7 @@ def _failed(inference: Inference) -> dict[str, dict[str, Severity]]:
     return {part: failed[name] for part, name in carrier.items()}
 
 
-def _suspected(finding: Finding, carrier: dict[str, str]) -> str | None:
+def _suspected(finding: Observation, carrier: dict[str, str]) -> str | None:
     """The joint that a finding is about: of KV311 that of the part which is brought into another body."""
     parts = [carrier[part] for part in finding.pair or () if part in carrier]
     if finding.check == "KV311" and finding.joint not in parts and parts:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.check import Check
-    from kinematify.validation.finding import Finding
+    from kinematify.validation.finding import Observation
 
 _UNIT_SHARE = 1e-3  # of the largest part: a good unit for FCL, which takes short lengths for none
 
@@ -139,7 +139,7 @@ def _motions_about(joint: Joint, point: FloatArray, values: FloatArray) -> Float
 class MotionVerdict:
     """What exact geometry says of a plan."""
 
-    findings: tuple[Finding, ...]
+    findings: tuple[Observation, ...]
     joints: tuple[JointSummary, ...]
     """With the free travel of each joint that moves."""
 
@@ -160,7 +160,7 @@ class Simulator:
     def judge(self, model: KinematicModel, child: str | None = None) -> MotionVerdict:
         """Judge a whole plan, or the joint above one part by its motion alone; a fixed joint has nothing to say."""
         look = GeometryContext(self._world.scene(model))
-        found: list[Finding] = []
+        found: list[Observation] = []
         if child is None:
             found = _findings(checks_of("KV30"), look)
         summaries: list[JointSummary] = []
@@ -173,7 +173,7 @@ class Simulator:
 
     def _joint(
         self, look: GeometryContext, model: KinematicModel, leader: int, name: str
-    ) -> tuple[list[Finding], JointSummary]:
+    ) -> tuple[list[Observation], JointSummary]:
         key = _key(model, name)
         if key not in self._sweeps:
             self._sweeps[key] = look.sweeper.sweep(leader)
@@ -188,8 +188,8 @@ class Simulator:
         return found, summary
 
 
-def _findings(checks: Iterable[Check], context: object) -> list[Finding]:
-    found: list[Finding] = []
+def _findings(checks: Iterable[Check], context: object) -> list[Observation]:
+    found: list[Observation] = []
     for check in checks:
         result = OpenCheck(id=check.id, engine=None)
         check.run(result, context)

@@ -165,23 +165,23 @@ def contact_opens(result: OpenCheck, case: JointCase) -> None:
     """
     if not case.opens or not case.doubts_line or case.opened is None:
         return
-    own, other = case.opened
+    (own, at), (other, _) = case.opened
     joint = case.measures.joint
     swept = [check for check in (case.doubted or {}).get(joint.source, ()) if check in _SWEPT]
     also = f" Its sweep speaks against the same line ({', '.join(swept)})." if swept else ""
-    value = joint.value + own.at
+    value = joint.value + at
     where = f"{value:.3g} m" if case.measures.slides else f"{np.degrees(value):.3g} deg"
     result.find(
         f"{case.child} lifts off {case.parent}: at {where} of {joint.source}, half of where they touch at rest is "
-        f"{own.width:.3g} m or more farther apart. About the line that fits best it is {max(other.width, 0.0):.3g} m."
+        f"{own:.3g} m or more farther apart. About the line that fits best it is {max(other, 0.0):.3g} m."
         f"{also}",
         case.instead,
         severity=Severity.ERROR if swept else None,
         joint=joint.source,
         pair=(case.parent, case.child),
         q={joint.source: value},
-        value=own.width,
-        limit=max(other.width, 0.0),
+        value=own,
+        limit=max(other, 0.0),
         unit="m",
     )
 

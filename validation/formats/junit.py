@@ -58,7 +58,7 @@ def _fill_unusable(suite: _Element, outcome: Unusable) -> None:
     etree.SubElement(case, "error", message=message, type="unusable").text = message
 
 
-def _add_case(suite: _Element, model: str, check: CheckResult) -> None:
+def _add_case(suite: _Element, model: str, check: CheckResult[Finding]) -> None:
     case = etree.SubElement(
         suite,
         "testcase",

@@ -110,7 +110,7 @@ def joint_table(report: ValidationReport) -> Table:
 
 def family_table(report: ValidationReport) -> Table:
     """Checks by family and engine, with a count for each status."""
-    groups: dict[tuple[str, str], list[CheckResult]] = {}
+    groups: dict[tuple[str, str], list[CheckResult[Finding]]] = {}
     for check in report.checks:
         groups.setdefault((check.check[:3], check.engine or "-"), []).append(check)
     rows = [
@@ -150,7 +150,7 @@ def alternative(joint: JointSummary) -> str:
     return ", ".join([*kind, *places, *score])
 
 
-def title(item: CheckResult | Finding) -> str:
+def title(item: CheckResult[Finding] | Finding) -> str:
     """Id, title and engine of a check: what is wrong of a finding or a check that failed, else what should be."""
     failed = isinstance(item, Finding) or item.status is Status.FAIL
     return _titled(item.check, CHECKS[item.check].fails, item.engine) if failed else lasting_title(item)
@@ -165,7 +165,7 @@ def follow_words(consequences: Iterable[Finding]) -> str:
     )
 
 
-def lasting_title(item: CheckResult | Finding) -> str:
+def lasting_title(item: CheckResult[Finding] | Finding) -> str:
     """Id, title and engine of a check, the same whatever became of it: names by which machines follow it over time."""
     return _titled(item.check, CHECKS[item.check].title, item.engine)
 

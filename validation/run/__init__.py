@@ -22,7 +22,7 @@ from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engi
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolved_copy
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
+from kinematify.validation.finding import Cause, CheckResult, Observation, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.model_cache import has_model
 from kinematify.validation.run.conclusion import concluded
@@ -178,7 +178,7 @@ class _Run:
         self.source = ValidatedFile()
         self.robot: Robot | None = None
         self._progress = progress or (lambda stage, fraction: None)
-        self._results: dict[CheckKey, CheckResult] = {}
+        self._results: dict[CheckKey, CheckResult[Observation]] = {}
         self._joints: dict[str, JointSummary] = {}
         self._why: dict[CheckKey, tuple[Status, str]] = {}
         self._started = time.perf_counter()
@@ -232,7 +232,7 @@ class _Run:
         if self.task is not None:
             self._use(request, self.engines)
 
-    def _broken(self) -> list[Finding]:
+    def _broken(self) -> list[Observation]:
         """What keeps the document from being read: errors of file and meshes, but for shapes that are left out."""
         found = [result for key, result in self._results.items() if key[0] in _GUARDS - LEFT_OUT]
         return [item for result in found for item in result.findings if item.severity is Severity.ERROR]
@@ -247,7 +247,7 @@ class _Run:
             return None
         return readable_copy(request, broken)
 
-    def _ids(self, findings: Iterable[Finding]) -> str:
+    def _ids(self, findings: Iterable[Observation]) -> str:
         return ", ".join(sorted({finding.check for finding in findings})) or "the errors above"
 
     def _read_meshes(
@@ -328,7 +328,7 @@ class _Run:
         place = {joint.name: number for number, joint in enumerate(() if robot is None else robot.joints)}
         return sorted(self._joints.values(), key=lambda item: place.get(item.joint, len(place)))
 
-    def _take(self, result: CheckResult | JointSummary) -> None:
+    def _take(self, result: CheckResult[Observation] | JointSummary) -> None:
         if isinstance(result, JointSummary):
             self._joints[result.joint] = _merged(self._joints.get(result.joint), result)
         else:
@@ -369,7 +369,7 @@ class _Run:
             reason = self.source.reason(reason) or reason
             self._why.setdefault(key, (Status.SKIPPED, "it was not asked for") if unwanted else (status, reason))
 
-    def _result(self, key: CheckKey) -> CheckResult:
+    def _result(self, key: CheckKey) -> CheckResult[Observation]:
         result = self._results.get(key)
         if result is not None and (key[0] in self.selected or _has_error(result)):
             return result
@@ -381,7 +381,7 @@ class _Run:
         words = f"kinematify validate {shlex.quote(str(self.path))} --budget {2.0 * seconds:g}"
         return f"to finish: {words}, other options as they were"
 
-    def _fallen(self, check: str, engine: str | None, end: StageEnd) -> CheckResult:
+    def _fallen(self, check: str, engine: str | None, end: StageEnd) -> CheckResult[Observation]:
         """A crash as a finding of the check that was under way."""
         result = OpenCheck(id=check, engine=engine, source=self.source)
         result.find(
@@ -409,7 +409,7 @@ def _task_seconds(settings: ValidationSettings) -> float:
     return max(settings.task.seconds, settings.budget.seconds)
 
 
-def _has_error(result: CheckResult) -> bool:
+def _has_error(result: CheckResult[Observation]) -> bool:
     return any(finding.severity is Severity.ERROR for finding in result.findings)
 
 

@@ -6,20 +6,20 @@ can be the cause of which stands at each check (`Check.follows`), and what both 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
 
 from kinematify.robot.robot import rigid_groups
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.check import CauseScope
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Cause, Severity, Status
+from kinematify.validation.finding import Cause, Finding, Observation, Severity, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.robot.robot import Robot
-    from kinematify.validation.finding import CheckResult, Finding, Suppression
+    from kinematify.validation.finding import CheckResult, Suppression
 
 _ORDER = tuple(Severity)
 _FAMILY, _OPENS, _ENERGY = "KV8", "KV801", "KV806"
@@ -48,19 +48,19 @@ def group_by_cause(findings: Iterable[Finding]) -> tuple[FindingGroup, ...]:
 
 
 def concluded(
-    results: Sequence[CheckResult],
+    results: Sequence[CheckResult[Observation]],
     robot: Robot | None,
     engines: Sequence[str] = (),
     *,
     named: bool = True,
     rules: Sequence[Suppression] = (),
-) -> tuple[CheckResult, ...]:
-    """Say what all results mean together.
+) -> tuple[CheckResult[Finding], ...]:
+    """Write the findings of a run, each once: as severe as it is beside all other results, and with its cause.
 
     What one engine shows of the untouched file is no error where the file works in another one; what is laid to an
     engine and only one shows is a note then, and a warning where no other engine runs the file.
 
-    A cause is as bad as the worst that follows from it, and where it is suppressed, so is what follows. A note is the
+    What others follow from is as bad as the worst of them, and where it is suppressed, so are they. A note is the
     cause of notes alone, unless it is about the link for which an engine refuses the file.
 
     Args:
@@ -70,99 +70,92 @@ def concluded(
         named: False: the user named no engine, and what the only one shows is a warning.
         rules: Findings that the user accepts; the first that fits gives the reason.
     """
-    if tuple(engines) == DEFAULT_ENGINES or not named:
-        results = [
-            result.with_findings(_agreed(item, results, named) for item in result.findings) for result in results
-        ]
-    accepted = ((result, (_suppressed(item, rules) for item in result.findings)) for result in results)
-    return _with_causes([replace(result, findings=tuple(found)) for result, found in accepted], robot)
+    compared = tuple(engines) == DEFAULT_ENGINES or not named
+    seen = [item for result in results for item in result.findings]
+    facts = {id(item): _beside_others(item, results, named) if compared else (item.severity, "") for item in seen}
+    severity = {key: found for key, (found, _) in facts.items()}
+    accepted = {id(item): next((rule.reason for rule in rules if rule.covers(item)), None) for item in seen}
+    subjects = _Subjects(robot, frozenset(item.link for item in seen if item.check == _OPENS and item.link))
+    above = {id(item): cause for item in seen if (cause := _cause(item, seen, severity, subjects)) is not None}
+    roots: dict[int, Observation] = {}
+    worst = dict(severity)
+    for item in seen:
+        root = item
+        while id(root) in above:
+            root = above[id(root)]
+        roots[id(item)] = root
+        if root is not item and accepted[id(item)] is None:
+            worst[id(root)] = min(worst[id(root)], severity[id(item)], key=_ORDER.index)
+    written: dict[int, Finding] = {}
+    for item in sorted(seen, key=lambda item: id(item) in above):
+        cause = written.get(id(roots[id(item)]))
+        values = {field.name: getattr(item, field.name) for field in fields(Observation)}
+        values |= {"severity": worst[id(item)], "message": item.message + facts[id(item)][1]}
+        reason = accepted[id(item)] or (None if cause is None else cause.suppressed)
+        written[id(item)] = Finding(**values, suppressed=reason, follows_from=cause)
+    return tuple(_written(result, tuple(written[id(item)] for item in result.findings)) for result in results)
 
 
-def _agreed(finding: Finding, results: Sequence[CheckResult], named: bool) -> Finding:
-    """Return a finding of the untouched file as severe as it is beside what other engines say."""
-    if finding.severity is not Severity.ERROR or not finding.check.startswith(_FAMILY):
-        return finding
+def _written(result: CheckResult[Any], findings: tuple[Finding, ...]) -> CheckResult[Finding]:
+    """Return a result with its findings; it has failed if one of them counts, unless it is blocked or skipped."""
+    status = result.status
+    if status in (Status.PASS, Status.FAIL):
+        counted = any(finding.severity is not Severity.NOTE for finding in findings)
+        status = Status.FAIL if counted else Status.SKIPPED if result.unfinished else Status.PASS
+    return replace(result, status=status, findings=findings)
+
+
+def _beside_others(item: Observation, results: Sequence[CheckResult[Observation]], named: bool) -> tuple[Severity, str]:
+    """Return how severe an observation of the untouched file is beside what other engines say, and what they say."""
+    if item.severity is not Severity.ERROR or not item.check.startswith(_FAMILY):
+        return item.severity, ""
     errors = [
-        item
+        other
         for result in results
-        for item in result.findings
-        if item.check.startswith(_FAMILY) and item.severity is Severity.ERROR
+        for other in result.findings
+        if other.check.startswith(_FAMILY) and other.severity is Severity.ERROR
     ]
     failing = {
         other.engine
         for other in errors
-        if other.joint in (None, finding.joint) and (other.check == _ENERGY) <= (finding.check == _ENERGY)
+        if other.joint in (None, item.joint) and (other.check == _ENERGY) <= (item.check == _ENERGY)
     }
-    same = (result for result in results if result.check == finding.check)
+    same = (result for result in results if result.check == item.check)
     ran = {result.engine for result in same if result.status in (Status.PASS, Status.FAIL)} - failing
     works = [entry.title for name, entry in ENGINES.items() if name in ran]
-    alone = finding.cause is Cause.ENGINE and not any(
-        other.check == finding.check and other.engine != finding.engine for other in errors
+    alone = item.cause is Cause.ENGINE and not any(
+        other.check == item.check and other.engine != item.engine for other in errors
     )
     if works:
-        said, severity = f" It works in {' and '.join(works)}.", Severity.NOTE if alone else Severity.WARNING
-    elif not named:
-        said, severity = " No other engine was asked.", Severity.WARNING
-    else:
-        said, severity = "", Severity.WARNING if alone else Severity.ERROR
-    return replace(finding, severity=severity, message=f"{finding.message}{said}")
+        return Severity.NOTE if alone else Severity.WARNING, f" It works in {' and '.join(works)}."
+    if not named:
+        return Severity.WARNING, " No other engine was asked."
+    return Severity.WARNING if alone else Severity.ERROR, ""
 
 
-def _suppressed(finding: Finding, rules: Sequence[Suppression]) -> Finding:
-    rule = next((rule for rule in rules if rule.covers(finding)), None)
-    return finding if rule is None else replace(finding, suppressed=rule.reason)
-
-
-def _with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[CheckResult, ...]:
-    """Name the cause of every finding that follows from another one."""
-    findings = [finding for result in results for finding in result.findings]
-    subjects = _Subjects(robot, frozenset(item.link for item in findings if item.check == _OPENS and item.link))
-    above = {id(item): cause for item in findings if (cause := _cause(item, findings, subjects)) is not None}
-    roots: dict[int, Finding] = {}
-    for finding in findings:
-        root = finding
-        while id(root) in above:
-            root = above[id(root)]
-        roots[id(finding)] = root
-    final: dict[int, Finding] = {}
-    for root in findings:
-        if id(root) not in above:
-            followers = [item for item in findings if roots[id(item)] is root and item.suppressed is None]
-            worst = min((item.severity for item in (root, *followers)), key=_ORDER.index)
-            final[id(root)] = replace(root, severity=worst)
-    for finding in findings:
-        if id(finding) in above:
-            cause = final[id(roots[id(finding)])]
-            final[id(finding)] = replace(finding, follows_from=cause, suppressed=finding.suppressed or cause.suppressed)
-
-    def finished(result: CheckResult) -> CheckResult:
-        found = tuple(final[id(item)] for item in result.findings)
-        counted = any(item.severity is not Severity.NOTE for item in found)
-        failed = counted and result.status is Status.PASS  # what is blocked stays so
-        return replace(result, findings=found, status=Status.FAIL if failed else result.status)
-
-    return tuple(map(finished, results))
-
-
-def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -> Finding | None:
-    """Return the worst finding that a finding directly follows from.
+def _cause(
+    item: Observation, seen: Sequence[Observation], severity: Mapping[int, Severity], subjects: _Subjects
+) -> Observation | None:
+    """Return the worst observation that another one directly follows from.
 
     What several engines find alike follows from the first of them.
     """
-    follows = CHECKS[finding.check].follows
-    earlier = findings[: next(number for number, other in enumerate(findings) if other is finding)]
+    follows = CHECKS[item.check].follows
+    earlier = seen[: next(number for number, other in enumerate(seen) if other is item)]
     fits = [
         other
         for check, shared in follows.items()
-        for other in (earlier if check == finding.check else findings)
-        if other.check == check and subjects.share(other, finding, shared)
+        for other in (earlier if check == item.check else seen)
+        if other.check == check and subjects.share(other, item, shared)
     ]
     fits = [
-        item
-        for item in fits
-        if item.severity is not Severity.NOTE or finding.severity is Severity.NOTE or item.link in subjects.refused
+        other
+        for other in fits
+        if severity[id(other)] is not Severity.NOTE
+        or severity[id(item)] is Severity.NOTE
+        or other.link in subjects.refused
     ]
-    return min(fits, key=lambda item: _ORDER.index(item.severity), default=None)
+    return min(fits, key=lambda other: _ORDER.index(severity[id(other)]), default=None)
 
 
 class _Subjects:
@@ -174,7 +167,7 @@ class _Subjects:
         self._body = {link: group.links[0] for group in groups for link in group.links}
         self._joints = {} if robot is None else robot.joint_by_name
 
-    def share(self, cause: Finding, finding: Finding, shared: CauseScope) -> bool:
+    def share(self, cause: Observation, finding: Observation, shared: CauseScope) -> bool:
         """True if two findings are both about what a cause and its consequence must share."""
         if shared is CauseScope.MODEL:
             return True
@@ -187,7 +180,7 @@ class _Subjects:
             return len(first) == len(second) == 2 and first == second
         return bool(first & second)
 
-    def _bodies(self, finding: Finding) -> set[str]:
+    def _bodies(self, finding: Observation) -> set[str]:
         joint = self._joints.get(finding.joint or "")
         links = finding.pair or ((finding.link,) if finding.link else ()) or ((joint.child,) if joint else ())
         return {self._body.get(link, link) for link in links}

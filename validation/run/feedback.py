@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.robot import Joint
     from kinematify.validation.failure_rates import FailureRates
-    from kinematify.validation.finding import Finding
+    from kinematify.validation.finding import Observation
     from kinematify.validation.summary import JointSummary
 
 
@@ -98,7 +98,7 @@ class Feedback:
         return any(item.error for item in (*self.lines, *self.types) if item.child == child)
 
 
-def only_collision_meets(finding: Finding) -> bool:
+def only_collision_meets(finding: Observation) -> bool:
     """True if the exact geometry saw no visible parts meet, so that nothing speaks against the joint."""
     return finding.cause is Cause.PHYSICS and finding.check.startswith("KV3")
 
@@ -112,7 +112,7 @@ def _worst_of_each(signals: Iterable[JointSignal], child: str) -> float:
 
 
 def feedback_from(
-    findings: Sequence[Finding],
+    findings: Sequence[Observation],
     summaries: Iterable[JointSummary],
     joints: Mapping[str, Joint],
     *,
@@ -121,7 +121,7 @@ def feedback_from(
     """Turn the findings about one model into feedback.
 
     Args:
-        findings: All of them, in any order; suppressed ones do not count.
+        findings: All of them, in any order.
         summaries: Free travel of the joints, where it was measured.
         joints: The joints of the model by name.
         rates: How often each failure occurs, which is what it weighs; the shipped ones if absent.
@@ -134,8 +134,7 @@ def feedback_from(
         rates=rates or shipped_rates(),
     )
     for finding in findings:
-        if finding.suppressed is None:
-            _route(case, finding)
+        _route(case, finding)
     return Feedback(
         edges=tuple(case.edges),
         lines=tuple(case.lines),
@@ -148,7 +147,7 @@ def feedback_from(
 class _Case:
     """Findings of one model with what is known of its joints, and the signals so far."""
 
-    findings: Sequence[Finding]
+    findings: Sequence[Observation]
     travel: Mapping[str, tuple[float, float]]
     joints: Mapping[str, Joint]
     rates: FailureRates
@@ -164,7 +163,7 @@ class _Case:
             for item in self.findings
         )
 
-    def against(self, finding: Finding, joint: Joint, *, parent_only: bool = False) -> None:
+    def against(self, finding: Observation, joint: Joint, *, parent_only: bool = False) -> None:
         """Add penalties of the parent of a joint, and of its line and type, where the failure is more frequent."""
         weights = {what: self.rates.weight(finding.check, finding.severity, what) for what in (LINE, TYPE, PARENT)}
         for what, signals in ((LINE, self.lines), (TYPE, self.types)):
@@ -182,7 +181,7 @@ class _Case:
 
     def end(
         self,
-        finding: Finding,
+        finding: Observation,
         joint: Joint,
         ends: tuple[float | None, float | None],
         reason: str,
@@ -204,7 +203,7 @@ class _Case:
             )
 
 
-def _route(case: _Case, finding: Finding) -> None:
+def _route(case: _Case, finding: Observation) -> None:
     """Hand a finding to the row of the table that it belongs to; what only collision geometry causes has none."""
     row = CHECKS[finding.check].feedback
     if finding.severity is Severity.NOTE or only_collision_meets(finding):
@@ -216,7 +215,7 @@ def _route(case: _Case, finding: Finding) -> None:
 # ---- the rows of the table -----------------------------------------------------------------------------------------
 
 
-def _into_parent(case: _Case, finding: Finding, joint: Joint) -> None:
+def _into_parent(case: _Case, finding: Observation, joint: Joint) -> None:
     """KV310: to both sides the line is wrong, to one side only the direction."""
     low, high = _free(case, finding)
     way = joint.upper - joint.lower
@@ -229,14 +228,14 @@ def _into_parent(case: _Case, finding: Finding, joint: Joint) -> None:
         case.against(finding, joint)
 
 
-def _end_there(case: _Case, finding: Finding, joint: Joint) -> None:
+def _end_there(case: _Case, finding: Observation, joint: Joint) -> None:
     """KV312: to one side, the range ends where the way does."""
     low, high = _free(case, finding)
     ends = low if joint.lower < low else None, high if high < joint.upper else None
     case.end(finding, joint, ends, "its way is blocked there")
 
 
-def _into_others(case: _Case, finding: Finding, joint: Joint) -> None:
+def _into_others(case: _Case, finding: Observation, joint: Joint) -> None:
     """KV311: what a part meets besides its parent may be what carries it, or its carrier moves it into that."""
     pair = finding.pair or ()
     if joint.child in pair and set(pair) - {joint.child, joint.parent}:
@@ -247,12 +246,12 @@ def _into_others(case: _Case, finding: Finding, joint: Joint) -> None:
         case.against(finding, carried, parent_only=True)
 
 
-def _not_carried(case: _Case, finding: Finding, joint: Joint) -> None:
+def _not_carried(case: _Case, finding: Observation, joint: Joint) -> None:
     """KV303: no contact supports the part there."""
     case.against(finding, joint, parent_only=True)
 
 
-def _derailed(case: _Case, finding: Finding, joint: Joint) -> None:
+def _derailed(case: _Case, finding: Observation, joint: Joint) -> None:
     """KV320: what leaves its parent runs along the wrong line or moves in the wrong way, or too far."""
     if case.has("KV321", joint=finding.joint):
         return  # a slide with a guide goes too far along the right line
@@ -264,7 +263,7 @@ def _derailed(case: _Case, finding: Finding, joint: Joint) -> None:
         case.end(finding, joint, ends, "beyond it it has left its parent", lost=True)
 
 
-def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
+def _out_of_guide(case: _Case, finding: Observation, joint: Joint) -> None:
     """KV321: the range ends at the stated share of the guide; where the way back is free, the part stands open."""
     end = finding.limit
     if end is None:
@@ -282,12 +281,12 @@ def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
         case.end(finding, joint, (-end, other), reason, lost=True)
 
 
-def _upwards(finding: Finding) -> bool:
+def _upwards(finding: Observation) -> bool:
     """True if the joint was above zero where the failure was seen."""
     return (finding.q or {}).get(finding.joint or "", 0.0) >= 0.0
 
 
-_ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
+_ROWS: dict[FeedbackRow | None, Callable[[_Case, Observation, Joint], None]] = {
     FeedbackRow.INTO_PARENT: _into_parent,
     FeedbackRow.END: _end_there,
     FeedbackRow.OTHER_PARENT: _into_others,
@@ -297,6 +296,6 @@ _ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
 }
 
 
-def _free(case: _Case, finding: Finding) -> tuple[float, float]:
+def _free(case: _Case, finding: Observation) -> tuple[float, float]:
     """Range around zero in which nothing meets [rad or m]; (0, 0) where it was not measured."""
     return case.travel.get(finding.joint or "", (0.0, 0.0))

@@ -11,7 +11,7 @@ from kinematify.validation.finding import Status
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.finding import CheckResult
+    from kinematify.validation.finding import CheckResult, Finding
 
 _Z = 1.96
 """Of an interval of 95 %."""
@@ -20,7 +20,7 @@ CONTRACT = "KV82"
 """Begin of the ids of the contract for objects."""
 
 
-def as_loaded_words(checks: Sequence[CheckResult]) -> str:
+def as_loaded_words(checks: Sequence[CheckResult[Finding]]) -> str:
     """Return how many joints move in the untouched file, by engine; empty if no engine was asked.
 
     A joint moves if a hand moves it over its free range and nothing throws it, e.g.
@@ -52,7 +52,7 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
     return "\n".join(words)
 
 
-def contract_words(reports: Sequence[Sequence[CheckResult]]) -> str:
+def contract_words(reports: Sequence[Sequence[CheckResult[Finding]]]) -> str:
     """Return how many of some models keep the contract, with Wilson's interval of 95 %; empty if it was not asked for.
 
     Args:

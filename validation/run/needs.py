@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
-    from kinematify.validation.finding import CheckResult
+    from kinematify.validation.finding import CheckResult, Observation
     from kinematify.validation.geometry.look import JointMotion
     from kinematify.validation.stage import StageRequest
     from kinematify.validation.summary import JointSummary
@@ -161,7 +161,7 @@ def _stage(name: str, run: Run, checks: tuple[CheckKey, ...], *imports: str, lib
     return Stage(name=name, run=partial(_recorded, run), checks=checks, imports=imports, library=library)
 
 
-def _recorded(run: Run, request: StageRequest, tell: Callable[[CheckResult | JointSummary], None]) -> None:
+def _recorded(run: Run, request: StageRequest, tell: Callable[[CheckResult[Observation] | JointSummary], None]) -> None:
     """Run a stage in its process."""
     run(request, Recorder(tell, request))
 

@@ -14,6 +14,7 @@ from kinematify.validation.finding import CheckResult, Severity, Status
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from kinematify.validation.finding import Observation
     from kinematify.validation.stage import StageRequest
     from kinematify.validation.summary import JointSummary
 
@@ -35,7 +36,7 @@ class Subjects:
 class Recorder:
     """Runs the checks of a stage and passes each result on at once."""
 
-    def __init__(self, tell: Callable[[CheckResult | JointSummary], None], request: StageRequest) -> None:
+    def __init__(self, tell: Callable[[CheckResult[Observation] | JointSummary], None], request: StageRequest) -> None:
         """Keep where results go and which checks are wanted."""
         self._tell, self._request = tell, request
         self.fatal: set[str] = set()
@@ -122,7 +123,7 @@ def _shorten(result: OpenCheck, most: int) -> None:
         result.reason = f"{left} more findings of this kind are not listed"
 
 
-def _closed(check: OpenCheck, seconds: float) -> CheckResult:
+def _closed(check: OpenCheck, seconds: float) -> CheckResult[Observation]:
     counted = any(finding.severity is not Severity.NOTE for finding in check.findings)
     status = check.status or (Status.FAIL if counted else Status.PASS)
     return CheckResult(

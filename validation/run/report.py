@@ -35,7 +35,7 @@ class ValidationReport:
 
     model: str
     """Path as it was given."""
-    checks: tuple[CheckResult, ...]
+    checks: tuple[CheckResult[Finding], ...]
     joints: tuple[JointSummary, ...] = ()
     environment: Mapping[str, Any] = field(default_factory=dict)
     """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
@@ -71,7 +71,7 @@ class ValidationReport:
         return bool(self.environment.get("interrupted"))
 
     @property
-    def unfinished(self) -> tuple[CheckResult, ...]:
+    def unfinished(self) -> tuple[CheckResult[Finding], ...]:
         """Checks that time ran out for."""
         return tuple(check for check in self.checks if check.unfinished)
 
@@ -114,7 +114,7 @@ class ValidationReport:
         ]
 
 
-def _check_json(check: CheckResult) -> dict[str, Any]:
+def _check_json(check: CheckResult[Finding]) -> dict[str, Any]:
     return {
         "check": check.check,
         "title": CHECKS[check.check].fails if check.status is Status.FAIL else CHECKS[check.check].title,

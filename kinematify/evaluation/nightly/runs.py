@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.benchmark_job import JobResult
     from kinematify.evaluation.metrics import JointScore, ObjectScore
-    from kinematify.validation.finding import CheckResult
+    from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.run.report import ValidationReport
 
 SCHEMA = 2
@@ -269,7 +269,7 @@ def _kept(run: Run, report: ValidationReport, selected: Sequence[str], engines: 
     )
 
 
-def _shares(checks: Sequence[CheckResult]) -> dict[str, float]:
+def _shares(checks: Sequence[CheckResult[Finding]]) -> dict[str, float]:
     """Shares of joints that move as loaded, in the engine that moves the fewest, and of ranges that an arm opens."""
     moved = [item.measured for item in checks if item.check == "KV804" and item.measured.get("joints")]
     tried = [item.measured.items() for item in checks if item.check == "KV705"]
@@ -278,12 +278,12 @@ def _shares(checks: Sequence[CheckResult]) -> dict[str, float]:
     return found | ({OPENED: fmean(opened)} if opened else {})
 
 
-def _key(check: CheckResult) -> str:
+def _key(check: CheckResult[Finding]) -> str:
     """Id of a check with its engine, as problems and skipped checks name it."""
     return f"{check.check} [{check.engine}]" if check.engine else check.check
 
 
-def _problems(checks: Sequence[CheckResult]) -> tuple[Problem, ...]:
+def _problems(checks: Sequence[CheckResult[Finding]]) -> tuple[Problem, ...]:
     """Errors and warnings; where a check says the same of one place twice, a number distinguishes the two."""
     seen: dict[str, int] = defaultdict(int)
     problems = []
@@ -300,7 +300,7 @@ def _problems(checks: Sequence[CheckResult]) -> tuple[Problem, ...]:
     return tuple(problems)
 
 
-def _state(check: CheckResult) -> str:
+def _state(check: CheckResult[Finding]) -> str:
     if check.status is not Status.FAIL:
         return check.status.value
     errors = any(finding.severity is Severity.ERROR and finding.suppressed is None for finding in check.findings)
