@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.check import Check
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, JointSummary, Severity, Status
 from kinematify.validation.run.report import ValidationReport
-from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     import pytest

@@ -311,7 +311,7 @@ class AsLoadedContext:
         """Return the visible surfaces in motion, for joints that fall short; None where they are what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
-        from kinematify.validation.model_cache import model_of  # noqa: PLC0415
+        from kinematify.validation.stage import model_of  # noqa: PLC0415
 
         model = model_of(self.request)
         if not simplified(model) and len(self.request.free_travel) == len(self.mechanism.travels):

@@ -26,9 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from kinematify.validation.finding import CheckResult, Observation
+    from kinematify.validation.finding import CheckResult, JointSummary, Observation
     from kinematify.validation.stage import StageRequest
-    from kinematify.validation.summary import JointSummary
 
 _SHOWN = 200
 """Characters of a failed stage's last words."""

@@ -1,10 +1,13 @@
-"""Input of the stages of a run, each a group of checks in a process of its own."""
+"""Input of the stages of a run, each a group of checks in a process of its own, and the model that one leaves them."""
 
 from __future__ import annotations
 
+import pickle
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -12,7 +15,11 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.plan_request import PriorFinding, TaskRequest
+    from kinematify.robot.robot import Robot
     from kinematify.validation.validated_file import ValidatedFile
+
+_LEFT = "model.pickle"
+"""In the folder of the run, which nobody else writes to."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,3 +62,33 @@ class StageRequest:
     def remaining(self) -> float:
         """Seconds of processor time until the deadline, at least 0."""
         return max(0.0, self.deadline - time.process_time())
+
+
+def cache_model(model: Robot, work: Path) -> None:
+    """Leave a model for the later stages of a run, so that they need not parse its meshes again."""
+    partly = work / f"{_LEFT}.partly"
+    with partly.open("wb") as file:
+        pickle.dump(model, file, protocol=pickle.HIGHEST_PROTOCOL)
+    partly.replace(work / _LEFT)  # a stage that is stopped leaves no half of it
+
+
+def has_model(work: Path) -> bool:
+    """True if a stage of the run with this folder left the model."""
+    return (work / _LEFT).is_file()
+
+
+def model_of(request: StageRequest) -> Robot:
+    """Read the model of a run: what an earlier stage left, or else the files.
+
+    Raises:
+        DescriptionError: As for `read_robot`.
+    """
+    return _loaded(request.work / _LEFT) or read_robot(request.urdf, package_dirs=request.package_dirs)
+
+
+def _loaded(path: Path) -> Robot | None:
+    if not path.is_file():
+        return None
+    with path.open("rb") as file:
+        model: Robot = pickle.load(file)
+    return model

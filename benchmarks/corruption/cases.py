@@ -23,7 +23,7 @@ from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
 from kinematify.validation.run import validate
-from kinematify.validation.run.outcome import Unusable, as_json_text
+from kinematify.validation.run.report import Unusable, as_json_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
     from benchmarks.corruption.bases import Base
     from benchmarks.study import Record
-    from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.run.report import ValidationReport
+    from kinematify.validation.run.report import Outcome, ValidationReport
 
 KINDS = (*text.CORRUPTIONS, *meshes.CORRUPTIONS)
 _BUILT_SHARE = 0.5

@@ -32,7 +32,7 @@ from kinematify.validation.finding import Severity
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.report_picture import drawing_of
 from kinematify.validation.run import validate
-from kinematify.validation.run.outcome import as_json_text
+from kinematify.validation.run.report import as_json_text
 from kinematify.vision.infer_object import infer
 
 if TYPE_CHECKING:

@@ -125,7 +125,7 @@ def command(*, json_to: str | None, **given: Any) -> int:
 
 def _described(result: BatchResult) -> str:
     from kinematify.batch.batch_summary import STEP_HEADINGS, outcome_words, step_rows
-    from kinematify.validation.run.outcome import counted_words
+    from kinematify.validation.run.report import counted_words
 
     skipped = f"; skipped: {len(result.records) - result.new} done earlier" if len(result.records) > result.new else ""
     rate = f", {3600.0 * result.new / result.seconds:.0f} an hour" if result.new else ""

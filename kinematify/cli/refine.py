@@ -82,7 +82,7 @@ def command(*, model: Path, out: Path | None, json_to: str | None, **given: Any)
 
 def describe_refinement(inference: Inference) -> str:
     """What changed and why as a table, which round was kept and why the loop ended."""
-    from kinematify.validation.run.outcome import counted_words
+    from kinematify.validation.run.report import counted_words
 
     record = inference.refinement
     if record is None:

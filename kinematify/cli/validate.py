@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.validation.finding import Suppression
-    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import Outcome
 
 
 _REPORTS = ("json", "junit", "sarif", "html", "suggest_accept")
@@ -160,7 +160,7 @@ def command(**given: Any) -> int:
     from kinematify.validation.formats.report_files import report_paths, write_reports
     from kinematify.validation.models import find_models
     from kinematify.validation.run.model_validation import validate
-    from kinematify.validation.run.outcome import Unusable
+    from kinematify.validation.run.report import Unusable
     from kinematify.validation.run.suppression_file import load_suppressions
 
     words, everything, fail_on = given.pop("models"), given.pop("everything"), Severity(given.pop("fail_on"))
@@ -218,7 +218,7 @@ def _print(
 ) -> None:
     """Print the report on stdout unless a machine reads that, and what is no result on stderr."""
     from kinematify.cli.verdict import describe, describe_table, describe_unused
-    from kinematify.validation.run.outcome import Unusable
+    from kinematify.validation.run.report import Unusable
     from kinematify.validation.run.suppression_file import unused_suppressions
 
     reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]

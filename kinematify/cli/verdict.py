@@ -26,8 +26,7 @@ from kinematify.validation.formats.report_content import (
     title,
     where,
 )
-from kinematify.validation.run.loaded_words import contract_words
-from kinematify.validation.run.outcome import Unusable, counted_words, severity_counts, status_counts
+from kinematify.validation.run.report import Unusable, contract_words, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -35,8 +34,7 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import Finding, Suppression
     from kinematify.validation.formats.report_content import FindingBlock, Table
     from kinematify.validation.run.conclusion import FindingGroup
-    from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.run.report import ValidationReport
+    from kinematify.validation.run.report import Outcome, ValidationReport
 
 MANY = 3
 """From so many findings on that differ in names and numbers only, they are a table."""

@@ -20,8 +20,8 @@ from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_gr
 from kinematify.robot.vectors import as_one
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import checks_of
+from kinematify.validation.finding import JointSummary
 from kinematify.validation.geometry.look import GeometryContext, JointMotion
-from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

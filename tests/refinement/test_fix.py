@@ -22,9 +22,8 @@ from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engine_file import Unloadable
 from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, JointSummary, Severity, Status
 from kinematify.validation.run.report import ValidationReport
-from kinematify.validation.summary import JointSummary
 from kinematify.versions import NO_WHEELS
 
 pybullet = pytest.importorskip("pybullet", reason=NO_WHEELS)

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.validation.finding import CheckResult
-from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.run.needs import Recorder
 from kinematify.validation.stage import StageRequest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.validation.summary import JointSummary
+    from kinematify.validation.finding import JointSummary
 
 Vector = tuple[float, float, float]
 

@@ -17,11 +17,9 @@ from kinematify.model.urdf import write_urdf
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import CheckResult, Finding
-from kinematify.validation.run.needs import joints
-from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.finding import CheckResult, Finding, JointSummary
+from kinematify.validation.run.needs import Recorder, joints
 from kinematify.validation.stage import StageRequest
-from kinematify.validation.summary import JointSummary
 from tests.known import KnownJoint, KnownObject
 
 SELECTED = frozenset(CHECKS)

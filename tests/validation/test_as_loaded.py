@@ -21,7 +21,7 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.run import needs, validate
 from kinematify.validation.run.conclusion import concluded
-from kinematify.validation.run.loaded_words import (
+from kinematify.validation.run.report import (
     as_loaded_words,
     contract_words,
 )

@@ -16,11 +16,12 @@ from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.isolation import _EVERY_STAGE
 from kinematify.validation.run.needs import (
+    Recorder,
+    Subjects,
     keys,
     stages_of,
     task_stage,
 )
-from kinematify.validation.run.recorder import Recorder, Subjects
 from kinematify.validation.stage import StageRequest
 from tests.places import ROOT
 

@@ -11,9 +11,8 @@ import pytest
 
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.checks import checks_of
-from kinematify.validation.finding import Cause, CheckResult, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, JointSummary, Severity, Status
 from kinematify.validation.run import validate
-from kinematify.validation.summary import JointSummary
 from tests.household import (
     barrel_hinge_door,
     button,

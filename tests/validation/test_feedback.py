@@ -13,11 +13,9 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import CLASSES, LINE, PARENT, TYPE, FailureRates, shipped_rates
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity
+from kinematify.validation.finding import Cause, CheckResult, Finding, JointSummary, Severity
 from kinematify.validation.run.feedback import Feedback, feedback_from
-from kinematify.validation.run.needs import geometry
-from kinematify.validation.run.recorder import Recorder
-from kinematify.validation.summary import JointSummary
+from kinematify.validation.run.needs import Recorder, geometry
 from tests.validation.engine_models import Box, Model, Part, cabinet
 from tests.validation.test_geometry import beam, block, request_for
 

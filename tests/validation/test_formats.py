@@ -14,7 +14,7 @@ from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
-from kinematify.validation.run.outcome import Outcome, Unusable, as_json_text
+from kinematify.validation.run.report import Outcome, Unusable, as_json_text
 from tests.reports import EVIL, add_checks, finding, full_report, report, result
 
 UNUSABLE = Unusable(model="models/arm.xacro", message="It is xacro. Expand it first.")

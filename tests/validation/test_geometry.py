@@ -11,11 +11,9 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
-from kinematify.validation.run.needs import geometry
-from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.finding import Cause, CheckResult, Finding, JointSummary, Severity, Status
+from kinematify.validation.run.needs import Recorder, geometry
 from kinematify.validation.stage import StageRequest
-from kinematify.validation.summary import JointSummary
 from tests.validation.engine_models import Box, Model, Part, cabinet, tell
 
 SELECTED = frozenset(CHECKS)

@@ -13,8 +13,7 @@ from kinematify.config.validation import load_settings
 from kinematify.robot.robot import Robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
-from kinematify.validation.run.needs import meshes
-from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.run.needs import Recorder, meshes
 from kinematify.validation.stage import StageRequest
 
 SETTINGS = load_settings()

@@ -16,8 +16,7 @@ from kinematify import validate
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
-from kinematify.validation.run.needs import meshes
-from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.run.needs import Recorder, meshes
 from kinematify.validation.stage import StageRequest
 from kinematify.versions import NO_WHEELS
 from tests.validation.engine_models import Box, Model, Part

@@ -13,8 +13,7 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
-from kinematify.validation.run.needs import file
-from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.run.needs import Recorder, file
 from kinematify.validation.stage import StageRequest
 
 CLEAN = """\

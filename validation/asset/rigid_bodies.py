@@ -1,4 +1,4 @@
-"""Rigid bodies with their mass, and the room that links take."""
+"""Rigid bodies with their mass, the room that links take, and the loads that joints bear against gravity."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from kinematify.geometry.convex import enclosed_volume, outermost, thickened
-from kinematify.robot.robot import Inertial, forward_kinematics, rigid_groups
+from kinematify.geometry.sampling import spread_rows
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import Inertial, forward_kinematics, rest_configuration, rigid_groups
 from kinematify.robot.vectors import referenced
-from kinematify.validation.asset.loads import worst_loads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -239,3 +240,61 @@ def _both(name: str, visual: dict[str, Room], collision: dict[str, Room]) -> Roo
     if seen is None or felt is None:
         return seen or felt
     return Room(points=np.concatenate([seen.points, felt.points]), solid=seen.solid)
+
+
+_GRAVITY = 9.81
+_NO_LIMIT = np.pi
+"""Range to each side in which a joint without limits is looked at [rad]."""
+
+
+def worst_loads(robot: Robot, doublings: int) -> dict[str, tuple[float, dict[str, float]]]:
+    """Return the largest weight at each joint [N m or N] and the configuration that it was found in.
+
+    Args:
+        robot: Its root is fixed, and gravity acts along -z of it.
+        doublings: Of the number of configurations that are looked at beside rest.
+    """
+    loads: dict[str, tuple[float, dict[str, float]]] = {}
+    for q in _configurations(robot, doublings):
+        poses = forward_kinematics(robot, q)
+        carried = _carried(robot, poses)
+        for joint in robot.joints:
+            if joint.kind is JointType.FIXED:
+                continue
+            mass, moment = carried[joint.child]
+            axis = poses[joint.child][:3, :3] @ joint.axis
+            load = mass * abs(axis[2])
+            if joint.kind.turns:
+                lever = moment - mass * poses[joint.child][:3, 3]
+                load = abs(float(axis[1] * lever[0] - axis[0] * lever[1]))
+            if _GRAVITY * load > loads.get(joint.name, (0.0, {}))[0]:
+                loads[joint.name] = _GRAVITY * float(load), q
+    return loads
+
+
+def _configurations(robot: Robot, doublings: int) -> list[dict[str, float]]:
+    """Rest and quasi-random configurations within the limits."""
+    joints = robot.leaders
+    rest = rest_configuration(robot)
+    found = [{joint.name: rest[joint.name] for joint in joints}]
+    if joints:
+        ends = np.array([[joint.lower, joint.upper] for joint in joints])
+        low, high = np.clip(ends, -_NO_LIMIT, _NO_LIMIT).T
+        values = spread_rows(low, high, 2**doublings, seed=0)
+        found += [dict(zip([joint.name for joint in joints], row.tolist(), strict=True)) for row in values]
+    return found
+
+
+def _carried(robot: Robot, poses: dict[str, FloatArray]) -> dict[str, tuple[float, FloatArray]]:
+    """Mass [kg] and mass times centre [kg m] of each link with all that hangs on it, world frame."""
+    carried: dict[str, tuple[float, FloatArray]] = {}
+    for link in robot.links:
+        mass = 0.0 if link.inertial is None else max(link.inertial.mass, 0.0)
+        centre = np.zeros(3) if link.inertial is None else link.inertial.center_of_mass
+        pose = poses[link.name]
+        carried[link.name] = mass, mass * (pose[:3, :3] @ centre + pose[:3, 3])
+    for joint in reversed(robot.joints_downward):
+        mass, moment = carried[joint.parent]
+        more, further = carried[joint.child]
+        carried[joint.parent] = mass + more, moment + further
+    return carried

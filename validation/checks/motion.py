@@ -9,17 +9,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.validation.check import CauseScope, FeedbackRow, check
-from kinematify.validation.finding import Cause, Severity
-from kinematify.validation.geometry.formatting import (
+from kinematify.validation.checks.shared import (
     BARELY,
     SLIMMER,
     UNFELT,
     UNSEEN,
     configuration,
-    in_document_order,
     joint_value,
     length,
 )
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.geometry.sweep import Meeting
@@ -250,7 +249,7 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
             "Align <axis> and <origin> with the hinge or guide, check the type, or reduce the limits.",
             severity=Severity.ERROR if far and held >= _GUIDED else Severity.WARNING,
             joint=motion.joint,
-            pair=in_document_order(scene.model, parent, child),
+            pair=motion.look.in_order(parent, child),
             q=configuration(scene, {motion.sweep.leader: value}),
             value=grown,
             limit=limit,
@@ -296,7 +295,7 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
                 if 0.8 * guide > _CRIPPLED * travel.range
                 else "Check <axis> and <origin>, and whether the guide is modelled.",
                 joint=motion.joint,
-                pair=in_document_order(scene.model, parent, child),
+                pair=motion.look.in_order(parent, child),
                 q=configuration(scene, {motion.sweep.leader: side.declared}),
                 value=way,
                 limit=scene.settings.guide * guide,

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.checks.shared import BARELY, SLIMMER, UNSEEN, configuration, length
 from kinematify.validation.finding import Cause, Severity
-from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
 
 if TYPE_CHECKING:
     from kinematify.geometry.rest_pairs import AtRest
@@ -156,7 +156,7 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
                 "Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
                 severity=Severity.NOTE if look.on_an_axle(connection) else None,
                 joint=connection.joints[-1],
-                pair=in_document_order(scene.model, parent, child),
+                pair=look.in_order(parent, child),
                 q=configuration(scene, {}),
                 value=gap,
                 limit=limit,

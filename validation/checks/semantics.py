@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
-from kinematify.validation.checks.shared import joints_move
+from kinematify.validation.checks.shared import configuration, joints_move
 from kinematify.validation.document import finite_numbers
 from kinematify.validation.finding import Cause, Severity, not_finished
-from kinematify.validation.geometry.formatting import configuration
 
 if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck

@@ -11,8 +11,7 @@ from kinematify.validation.check import check
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
-    from kinematify.validation.asset.extents import Extent
-    from kinematify.validation.asset.mesh_look import MeshContext
+    from kinematify.validation.asset.mesh_look import Extent, MeshContext
     from kinematify.validation.check import OpenCheck
 
 _MILLIMETRES = 1000.0

@@ -19,14 +19,13 @@ from kinematify.validation.formats.report_content import (
     summary_words,
     title,
 )
-from kinematify.validation.run.outcome import Unusable, severity_counts
+from kinematify.validation.run.report import Unusable, severity_counts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.validation.finding import Finding
-    from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.run.report import ValidationReport
+    from kinematify.validation.run.report import Outcome, ValidationReport
 
 _PNG_SIZES = slice(16, 24)
 """Where the first chunk of a PNG has width and height."""

@@ -11,7 +11,7 @@ from lxml import etree
 
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.report_content import family, lasting_title, measure, printable, where
-from kinematify.validation.run.outcome import Unusable
+from kinematify.validation.run.report import Unusable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.finding import CheckResult, Finding
-    from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.run.report import ValidationReport
+    from kinematify.validation.run.report import Outcome, ValidationReport
 
 _COUNTED = (("failures", "failure"), ("errors", "error"), ("skipped", "skipped"))
 

@@ -15,15 +15,14 @@ from kinematify.errors import ExitStatus
 from kinematify.validation.check import FAMILIES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Finding, Severity, Status
-from kinematify.validation.run.outcome import counted_words, severity_counts, status_counts
+from kinematify.validation.run.report import counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from kinematify.validation.finding import CheckResult
+    from kinematify.validation.finding import CheckResult, JointSummary
     from kinematify.validation.run.conclusion import FindingGroup
     from kinematify.validation.run.report import ValidationReport
-    from kinematify.validation.summary import JointSummary
 
 SHOWN_JOINTS = 4
 """A configuration is shortened to the joints that are farthest from zero."""

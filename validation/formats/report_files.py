@@ -12,7 +12,7 @@ from kinematify.errors import OutputError
 from kinematify.model.output import MODEL_FILE, PREVIEW_FILE
 from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
-from kinematify.validation.run.outcome import Unusable, as_json_text
+from kinematify.validation.run.report import Unusable, as_json_text
 from kinematify.validation.run.suppression_file import suggested_suppressions, suppressions_text
 
 if TYPE_CHECKING:
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.validation.finding import Suppression
     from kinematify.validation.formats.report_picture import Drawing
-    from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.run.report import ValidationReport
+    from kinematify.validation.run.report import Outcome, ValidationReport
 
 
 _PICTURES = 12

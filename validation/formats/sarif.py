@@ -21,7 +21,7 @@ from kinematify.validation.formats.report_content import (
     title,
     where,
 )
-from kinematify.validation.run.outcome import Unusable
+from kinematify.validation.run.report import Unusable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
     from kinematify.validation.run.conclusion import FindingGroup
-    from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.run.report import ValidationReport
+    from kinematify.validation.run.report import Outcome, ValidationReport
 
 SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "note"}

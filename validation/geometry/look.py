@@ -18,7 +18,6 @@ from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import looked_at, random_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import transformed
-from kinematify.validation.geometry.formatting import in_document_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -172,14 +171,19 @@ class GeometryContext:
         T = relative(self.scene.poses(row[None]), pair)
         firsts, seconds = (self._links_of(body) for body in pair)
         if len(firsts) * len(seconds) == 1:
-            return in_document_order(self.scene.model, *self.scene.name(pair))
+            return self.in_order(*self.scene.name(pair))
         overlap, bodies = self._overlap_of_links, self._links_apart.bodies
         links = [(first, second) for first in firsts for second in seconds]
         near = [two for two in links if boxes_meet(*overlap.solids(two), T)[0]]
         depth, best = max(((float(overlap.depth(two, T)[0]), two) for two in near), default=(0.0, links[0]))
         if depth == 0.0:
             best = min(links, key=lambda two: overlap.gap(two, T[0]))
-        return in_document_order(self.scene.model, *(bodies[link].name for link in best))
+        return self.in_order(*(bodies[link].name for link in best))
+
+    def in_order(self, first: str, second: str) -> tuple[str, str]:
+        """Names of two links in the order of the document."""
+        names = [link.name for link in self.scene.model.links]
+        return (first, second) if names.index(first) < names.index(second) else (second, first)
 
     def parent_and_child(self, connection: Connection, values: Mapping[int, float]) -> tuple[str, str]:
         """The same of two neighbours, the parent first."""

@@ -22,12 +22,11 @@ from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engi
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolved_copy
-from kinematify.validation.finding import Cause, CheckResult, Observation, Severity, Status, not_finished
+from kinematify.validation.finding import Cause, CheckResult, JointSummary, Observation, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
-from kinematify.validation.model_cache import has_model
 from kinematify.validation.run.conclusion import concluded
-from kinematify.validation.run.loaded_words import CONTRACT
 from kinematify.validation.run.needs import (
+    Recorder,
     file,
     geometry_stage,
     keys,
@@ -36,10 +35,8 @@ from kinematify.validation.run.needs import (
     needed,
     task_stage,
 )
-from kinematify.validation.run.recorder import Recorder
-from kinematify.validation.run.report import ValidationReport, environment
-from kinematify.validation.stage import StageRequest
-from kinematify.validation.summary import JointSummary
+from kinematify.validation.run.report import CONTRACT, ValidationReport, environment
+from kinematify.validation.stage import StageRequest, has_model
 from kinematify.validation.validated_file import ValidatedFile
 from kinematify.versions import require
 
@@ -50,10 +47,9 @@ if TYPE_CHECKING:
     from kinematify.manipulation.plan_request import TaskRequest
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
-    from kinematify.validation.finding import Suppression
+    from kinematify.validation.finding import JointSummary, Suppression
     from kinematify.validation.isolation import Stage, StageEnd
     from kinematify.validation.run.needs import CheckKey
-    from kinematify.validation.summary import JointSummary
     from kinematify.validation.validated_file import DocumentCopy
 
     Progress = Callable[[str, float], None]

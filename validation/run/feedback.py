@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.robot import Joint
     from kinematify.validation.failure_rates import FailureRates
-    from kinematify.validation.finding import Observation
-    from kinematify.validation.summary import JointSummary
+    from kinematify.validation.finding import JointSummary, Observation
 
 
 _OPEN_SHARE = 0.9  # a side that is free for half of the range only is no side to open to: a suitcase

@@ -15,8 +15,8 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.isolation import start_server
 from kinematify.validation.models import find_models
 from kinematify.validation.run import validate as run_checks
-from kinematify.validation.run.loaded_words import CONTRACT
 from kinematify.validation.run.needs import needed, stages_of
+from kinematify.validation.run.report import CONTRACT
 from kinematify.validation.run.suppression_file import known_pattern, load_suppressions
 
 if TYPE_CHECKING:

@@ -33,7 +33,7 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.report_content import where
 from kinematify.validation.run import validate
-from kinematify.validation.run.outcome import severity_counts
+from kinematify.validation.run.report import severity_counts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
