@@ -39,6 +39,11 @@ _CUBE_FACES = np.array(
     [1, 3, 0, 4, 1, 0, 0, 3, 2, 2, 4, 0, 1, 7, 3, 5, 1, 4, 5, 7, 1, 3, 7, 2, 6, 4, 2, 2, 7, 6, 6, 5, 4, 7, 5, 6]
 ).reshape(-1, 3)
 
+_ICOSAHEDRON = np.array(
+    [0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6, 7, 1, 8,
+     3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1]
+).reshape(-1, 3)  # fmt: skip
+
 
 class NoShape(DescriptionError):
     """An element has no geometry that can be read."""
@@ -226,12 +231,11 @@ def _tessellated(kind: str, size: tuple[float, ...]) -> RawMesh:
         return RawMesh(name="", vertices=(_CUBE - 0.5) * size, faces=_CUBE_FACES)
     if kind == "cylinder":
         return _cylinder(*size)
+    if kind == "sphere":
+        return _icosphere(*size)
     from trimesh import creation  # noqa: PLC0415  # takes longer than all else that reads a URDF
 
-    if kind == "sphere":
-        mesh = creation.icosphere(subdivisions=_SUBDIVISIONS, radius=size[0])
-    else:
-        mesh = creation.capsule(radius=size[0], height=size[1], count=(_SECTIONS // 2, _SECTIONS))
+    mesh = creation.capsule(radius=size[0], height=size[1], count=(_SECTIONS // 2, _SECTIONS))
     return RawMesh(name="", vertices=np.asarray(mesh.vertices), faces=np.asarray(mesh.faces, dtype=np.int64))
 
 
@@ -246,6 +250,23 @@ def _cylinder(radius: float, height: float) -> RawMesh:
     above, over = below + 1, after + 1
     faces = [below, bottom, after, below, after, above, above, after, over, above, over, top]
     return RawMesh(name="", vertices=vertices, faces=np.stack(faces, axis=1).reshape(-1, 3))
+
+
+def _icosphere(radius: float) -> RawMesh:
+    signs = np.array(list(product((-1.0, 1.0), repeat=2)))[[1, 3, 0, 2]]
+    short, long = np.array([1.0, 0.5 * (1.0 + np.sqrt(5.0))]) / np.sqrt(0.5 * (5.0 + np.sqrt(5.0)))
+    rim = np.insert(signs * (short, long), 2, 0.0, axis=1)
+    vertices, faces = np.concatenate([rim, rim[:, [2, 0, 1]], rim[:, [1, 2, 0]]]), _ICOSAHEDRON
+    for _ in range(_SUBDIVISIONS):
+        edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+        _, first, middle = np.unique(edges @ [1, len(vertices)], return_index=True, return_inverse=True)
+        a, b, c = faces.T
+        ab, bc, ca = middle.reshape(-1, 3).T + len(vertices)
+        faces = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1).reshape(-1, 3)
+        vertices = np.concatenate([vertices, vertices[edges[first]].mean(axis=1)])
+        lengths = np.sqrt(vertices**2 @ np.ones(3))[:, None]
+        vertices = vertices + vertices / lengths * (radius - lengths)
+    return RawMesh(name="", vertices=vertices, faces=faces)
 
 
 def _color(material: _Element | None) -> Rgba | None:

@@ -16,6 +16,7 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration, rigid_groups
+from kinematify.robot.urdf_geometry import primitive
 from tests.places import BENCH
 
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")
@@ -65,6 +66,14 @@ def test_primitives_are_centred_with_their_axis_along_z(
 ) -> None:
     found = bounds(urdf(tmp_path, link("a", visual(shape))))
     np.testing.assert_allclose(found, [np.negative(half), half], atol=2e-3)
+
+
+@pytest.mark.parametrize("radius", [0.035, 2.5])
+def test_a_sphere_is_the_icosphere_of_trimesh_to_the_last_bit(radius: float) -> None:
+    shape, known = primitive("sphere", (radius,), np.eye(4)), trimesh.creation.icosphere(4, radius)
+    assert shape.mesh is not None
+    np.testing.assert_array_equal(shape.mesh.vertices, known.vertices)
+    np.testing.assert_array_equal(shape.mesh.faces, known.faces)
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "dae", "off"])
