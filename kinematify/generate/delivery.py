@@ -40,6 +40,7 @@ _UPRIGHT, _LEVEL = 0.95, 0.2  # of the z component of an axis
 _LARGER = 5.0  # times as large or as small as usual the whole may be
 _ROUND = 0.06  # of a side, by which two sides of what is round differ
 _FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cylinder 0.785
+_TOWARDS = 0.3  # of a way, that leads to a side
 _GAP = 0.05  # between several [m]
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
@@ -53,6 +54,8 @@ _ALIKE = pairs(
     "rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|cymbal top|swing seat"
 )
 """Noun -> what it may be where no part is called so."""
+_BASE = words_of("body base frame housing case casing")
+"""Nouns that mean the base link where no part is called so."""
 _APART = words_of("door drawer wheel lid flap window knob button shelf tray seat")
 """Nouns of parts that are bodies of their own, each; several pedals, legs or tines may be one."""
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
@@ -121,7 +124,8 @@ def _called(family: Kind, blueprint: Blueprint, noun: str) -> list[Part]:
     ends = [part for part in blueprint.parts if key_of(stems[part.name].replace("_", " "))[-1:] == key_of(noun)]
     others = _ALIKE.get(wanted, "").split()
     alike = [part for part in blueprint.parts if _joined(stems[part.name]) in others]
-    if (found := exact or ends or alike) or wanted not in _JOINTS:
+    base = list(blueprint.parts[:1]) if wanted in _BASE else []
+    if (found := exact or ends or alike or base) or wanted not in _JOINTS:
         return found
     moving = [joint.child for joint in blueprint.joints if joint.mimic is None and moves_so(joint, wanted)]
     boxes = {part.name: part.bounds for part in blueprint.parts}
@@ -311,7 +315,7 @@ def _mirror_helps(family: Kind, made: Blueprint, request: Request) -> bool:
     """True if all that is to be on the left is on the right, or the other way round."""
     sides = ("left", "right")
     held = [
-        _is_at(made, names, part.side) if part.side in sides else _is_hinged(made, names, part.hinge or "")
+        is_at(made, names, part.side) if part.side in sides else _is_hinged(made, names, part.hinge or "")
         for noun, part in request.parts.items()
         if (part.side in sides or part.hinge in sides) and (names := names_called(family, made, noun))
     ]
@@ -444,8 +448,8 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     if parameter and (there < 2 or (part.count and there > part.count and there % part.count == 0)):
         there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
     stems = {stem_of(name).replace("_", " ") for name in names}
-    exact = parameter or any(_joined(stem) == _joined(noun) or key_of(stem)[-1] != key_of(noun)[-1] for stem in stems)
-    if part.count not in (None, there) and (exact or (names and there < (part.count or 1))):
+    groups = [sum(stem_of(name).replace("_", " ") == stem for name in names) for stem in stems]
+    if part.count not in (None, there) and (part.count not in groups or parameter) and (names or parameter):
         yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
     if part.at_least and names and there < part.at_least and (parameter or noun.rsplit(maxsplit=1)[-1] in _APART):
         yield f"several asked for, there is {there}"
@@ -457,7 +461,7 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     if not names:
         return
     yield from _size_faults(family, made, noun, names, part)
-    if part.side and not _is_at(made, names, part.side):
+    if part.side and not is_at(made, names, part.side):
         yield f"not at the {part.side}"
     if part.hinge and not _is_hinged(made, names, part.hinge):
         yield f"not hinged on the {part.hinge}"
@@ -468,6 +472,8 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
         yield f"{how} was asked for, it is {kinds}"
         return
     leading = [joint for joint in joints if joint.mimic is None and joint.kind is not JointType.FIXED]
+    if part.towards and not (leading and all(goes_towards(made, joint, part.towards) for joint in leading)):
+        yield f"does not move {part.towards if part.towards in ('in', 'out') else f'to the {part.towards}'}"
     if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
         yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
     if part.open is not None and not (leading and all(_stands(joint, part.open) for joint in leading)):
@@ -490,6 +496,35 @@ def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) ->
     apart = np.diff(np.sort(boxes.mean(axis=1), axis=0), axis=0) > 0.5 * np.ptp(boxes, axis=1).min(axis=0)
     along = 1 + apart.sum(axis=0)
     return bool(along[0] == columns and along[1:].max() == rows)
+
+
+def on_both_sides(made: Blueprint, names: Sequence[str]) -> bool:
+    """Return True if as many of some parts are left of the middle as right of it."""
+    shut = closed(made)
+    middle = shut.assembly.bounds[:, 0].mean()
+    return sum(np.sign(part.bounds[:, 0].mean() - middle) for part in shut.parts if part.name in names) == 0.0
+
+
+def goes_towards(made: Blueprint, joint: BlueprintJoint, side: str) -> bool:
+    """Return True if what a joint carries goes to a side as it opens, or either way where it goes both."""
+    low, high = _limits(joint)
+    if joint.kind is JointType.FIXED or not math.isfinite(low * high):
+        return joint.kind is not JointType.FIXED
+    way = min(high, 0.5 * math.pi) if high > 0.0 else low
+    shut = closed(made)
+    part, there = (
+        next(item for item in it.parts if item.name == joint.child) for it in (shut, shut.moved({joint.child: way}))
+    )
+    steps = there.vertices - part.vertices
+    step = steps[np.linalg.norm(steps, axis=1).argmax()]
+    step /= max(float(np.linalg.norm(step)), 1e-12)
+    if side in _SIDES:
+        axis, sign = _SIDES[side]
+        along = float(step[axis]) * sign
+        return (abs(along) if low < -1e-6 else along) > _TOWARDS
+    away = part.bounds.mean(axis=0) - shut.assembly.bounds.mean(axis=0)
+    outwards = float(step @ away) / max(float(np.linalg.norm(away)), 1e-12) - float(step[1])
+    return (outwards > _TOWARDS) if side == "out" else (outwards < -_TOWARDS)
 
 
 def are_round(made: Blueprint, names: Sequence[str]) -> bool:
@@ -519,7 +554,8 @@ def _is_looked(made: Blueprint, wanted: PartRequest) -> bool:
     return any((wanted.color or "") in name and (wanted.material or "") in name for name in own)
 
 
-def _is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
+def is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
+    """Return True if all of some parts are at a side of the whole."""
     axis, sign = _SIDES[side]
     shut = closed(made)
     whole = shut.assembly.bounds[:, axis]

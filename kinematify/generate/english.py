@@ -67,8 +67,8 @@ motion move: move moves moving open opens opening close closes closing lift lift
 motion move: come comes travel travels travelling traveling adjust adjusts press presses extend extends extending
 motion move: movable moveable adjustable raisable raising drops rise rises rising falls removable detachable lowers
 motion move: push pushes pulls pull roll rolls lower retract retracts retractable extendable extending drop dropping pop
-motion move: opened_up openable
-motion slide: slide slides sliding telescope telescopes telescopic telescoping
+motion move: opened_up openable aim aims aimed aiming operate operates operated
+motion slide: glide glides gliding slide slides sliding telescope telescopes telescopic telescoping
 motion hinge: swing swings swinging pivot pivots pivoting pivoted fold folds folding foldable flip flips flipping turn
 motion hinge: rocks rocking turns turning rotate rotates rotating rotatable tip tips tipping oscillates oscillating
 motion hinge: oscillate bends curls steers spread spreads leans hinged hinges hinge lean steer bend curl tippable
@@ -84,9 +84,17 @@ degree 0.5: half partly halfway half_way midway
 degree 0.15: slightly
 degree 1: fully wide completely
 stative: starts begins stands_ standing shown starting beginning drawn left currently initially
-where: up down out in back forward forwards outward outwards inward inwards away open upwards downwards off through
-where: sideways over flat apart together
-endless: endlessly continuously all_the_way full_circle right_round
+where: up down out in back forward forwards outward outwards inward inwards away open upward upwards downward downwards
+where: off through sideways over flat apart together
+towards top: up upward upwards
+towards bottom: down downward downwards
+towards out: out outward outwards
+towards in: inward inwards
+towards front: forward forwards
+extent 0 0.6: toy
+extent 0 0.3: pocket handheld tiny mini
+extent 0.5 99: industrial giant huge
+endless: endlessly continuously all_the_way all_the_way_round full_circle right_round
 stroke: travel stroke range way opening throw movement
 having: whose where when
 having: with having has have featuring including plus containing holding carrying comes_with fitted_with equipped_with
@@ -94,9 +102,9 @@ without: without no lacking
 relative: that which who
 refers: it its they them their each both all every either
 limit: to by at from up_to of through about around between limited over within
-place: on at along under to of from into through behind beside near by around inside between across against onto
+place: as on at along under to of from into through behind beside near by around inside between across against onto
 place: in above over below beneath underneath opposite next_to in_front_of off beyond within
-like: for as like per
+like: for like per than
 both: to_either_side to_both_sides to_each_side in_either_direction in_both_directions in_each_direction each_way
 both: either_way to_either_direction both_ways
 beside row: side_by_side in_a_row next_to_each_other
@@ -109,20 +117,18 @@ and: and or but plus
 use: hold holds store stores storing keep keeps fit fits take takes seat seats serve serves use used match matches suit
 use: suits remind reminds look looks work works need needs protect protects carries carry stay stays play plays fits_in
 filler: please i we you like want need make build create generate give show draw design get me us hello hi hey thanks
-filler: let would wants wanted object item thing model piece side hand end ends kind type sort itself own u one_of
+filler: let would wants wanted object item thing model piece side sides hand end ends kind type sort itself own u one_of
 filler: approximately roughly approx exactly about around whole throughout part parts each_other altogether total s
 filler: while mounted attached fixed connected placed located positioned arranged painted finished coloured colored
 filler: color colour made built there here lines stacked set in_total fitted independently have design looking ones one
 filler: middle center edge line corner done shaped this just only very really quite rather too
-plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant stylish fancy cute
-plain: beautiful nice cool robust strong durable solid professional practical simple plain
-plain: standard typical normal regular usual common new old good great quality ergonomic comfortable realistic
-plain: detailed basic scandinavian victorian industrial traditional brushed polished matte matt glossy
-plain: cast wrought toy lacquered big large huge small little tiny mini narrow short slim compact shallow low
-plain: portable electric electrical household kitchen garden office bathroom bedroom living room hallway workshop hotel
-plain: home commercial domestic outdoor indoor style styled wall identical matching freestanding free
-plain: garage school hospital restaurant camping travel patio laundry nursery studio shop lounge hall
-plain: separate individual independent vertical horizontal upright dark light bright pale deep extra
+plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant fancy cute beautiful nice cool
+plain: robust strong durable sturdy solid professional practical simple plain standard typical normal regular usual
+plain: common new old good great quality ergonomic comfortable realistic detailed basic scandinavian victorian pretty
+plain: brushed polished matte matt glossy shiny heavy handy cosy cozy lovely fancy funky tidy cast wrought lacquered
+plain: big large small little narrow short slim compact shallow low tall wide_ style styled freestanding free own extra
+plain: industrial toy pocket handheld tiny mini giant huge home household domestic separate individual
+plain: independent traditional identical matching dark light bright pale deep
 form: round ring ball bar cup loop wire mesh star bow dome barrel t d u l x hook
 part: door drawer flap knob button lever caster wheel crank rotor vent lock handle lid tray shelf hook gauge needle dial
 part: switch pedal seat leg arm blade window light display screen ladder mirror basket rail bell finger joint cover
@@ -144,13 +150,10 @@ OF_SOME = re.compile(
     r"|one (?:\w+ )+?and one (?:\w+)$|from the (?:bottom|left|right))\b"
 )
 """Clauses about some of the parts, which are not read."""
-OPINION = re.compile(r"\w{3,}(?:y|ous|ful|ish|ive|some|esque|(?<!gon)al)$")
-"""Adjectives that say what somebody thinks of a thing."""
-CLAIMS = re.compile(
-    r"old|well|free|heavy|high|good|\w+-(?:style|sized?|friendly|looking|made|grade|duty|quality|"
-    r"fashioned|proof|resistant|width|themed|inspired|coloured|colored)$"
-)
+_OPINION = re.compile(r"\w{3,}(?:ly|ous|ful|ish|ive|some|esque)$")
+"""Adverbs, and adjectives that say what somebody thinks of a thing."""
 _AMBIGUOUS = words_of("none yes no top bottom left right side plain one two four off fixed beside below within")
+_OF = "of|is|to be|about|with|at|around"
 _NUMBER = r"\d+(?:[.,]\d+)?"
 _UNIT = "|".join(sorted((re.escape(word) for word in (*UNITS, *ANGLES) if word != "in"), key=len, reverse=True))
 _TIMES = rf" ?(?:x|×|by) ?{_NUMBER}(?: ?(?:{_UNIT})(?![a-z]))?"
@@ -158,12 +161,13 @@ _TOKENS = re.compile(
     rf"(?P<dims>{_NUMBER}(?: ?(?:{_UNIT}))?{_TIMES}(?:{_TIMES})?)(?![a-z0-9])"
     rf"|(?P<range>(?:(?:from|between) )?[-−]?{_NUMBER} ?(?:{_UNIT})? ?(?:(?:up |down |back )?(?:to|and|\.\.)|–|-) ?"
     rf"\+?[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
-    rf"|(?P<symmetric>(?:±|\+/-|plus or minus|plus minus) ?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
+    rf"|(?P<symmetric>± ?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
     rf"|(?P<quantity>[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])|(?P<number>{_NUMBER}(?![a-z]))"
-    rf"|(?P<word>[a-z0-9]*[a-z][a-z0-9]*~?)|(?P<sign>[^\sa-z0-9])"
+    rf"|(?P<word>[a-z0-9]*[a-z][a-z0-9]*)|(?P<sign>[^\sa-z0-9])"
 )
 _BARE = re.compile(
     rf"(?<![\dx×.-] )\b{_NUMBER}(?= (?:wide|deep|high|tall|long|broad|thick)\b)"
+    rf"|(?:width|depth|height|length) {_NUMBER}(?! ?(?:{_UNIT}|[x×.,\d]))\b"
     rf"|from [-−]?{_NUMBER} to ([-−]?{_NUMBER})(?! ?(?:{_UNIT}))\b"
 )
 """A size or a range without a unit."""
@@ -172,6 +176,7 @@ _PURPOSE = re.compile(
     r"display|make|help|sit|use|match|go with|suit)) [^,;.:]*?(?=$|[,;.:]| with | that | having | whose | which )"
 )
 _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    (r"plus ?(?:/|or)? ?minus|\+/[-−]", "±"),
     (r"[’‘′]", "'"),
     (r"[“”″]|''", '"'),
     (
@@ -182,7 +187,11 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"'(?:s|m|d|ll|re|ve)?\b|(?<=s)'", ""),
     (r"(?<=\d) ?[–—-] ?(?=\d)", " to "),
     (r"(?<=\d)-(?=[a-z])|(?<=[a-z])-(?=\d)", " "),
-    (r"(?<=[a-z])-(?=[a-z])", "~ "),
+    (
+        r"\b(?:(?:\w+-)+(?:style|sized?|friendly|looking|made|grade|duty|quality|fashioned|proof|themed)|well-\w+)\b",
+        "",
+    ),
+    (r"(?<=[a-z])-(?=[a-z])", " "),
     (r"\bw/ ?", "with "),
     ("&", " and "),
     (r"(?<=\d),(?=\d{3}\b)", ""),
@@ -198,12 +207,13 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         (
             r"^(?:(?:for|in) [^,;:.]*?,? )?(?:i|we|you|they|my \w+|our \w+) (?:(?:am|are|is|would|just|really) )*"
             r"(?:(?:look|search|ask)(?:s|ing)? for|wants?|needs?|like|design(?:ing)?|build(?:ing)?|simulat(?:e|ing)) "
-            r"|^something (?:\w+ )*?for [^,;:.]*[,:] "
+            r"|^something like |^something (?:\w+ )*?for [^,;:.]*[,:] "
         ),
         "",
     ),
     (r"^for (?:my|our|the) \w+,? (?=an? )", ""),
-    (r"^((?:an? |the )?)built~? in ", r"\1"),
+    (r"^((?:an? |the )?)built in ", r"\1"),
+    (rf"\b(width|depth|height|length|diameter|thickness)(?: (?:{_OF}))* ({_NUMBER} ?(?:{_UNIT}))(?![a-z])", r"\2 \1"),
     (r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick|across)\b)", " inch "),
 )
 """Spelling, and how it is read."""
@@ -223,7 +233,6 @@ def _meanings() -> dict[str, dict[str, Any]]:
 
 WORDS: dict[str, dict[str, Any]] = _meanings()
 _NUMBERS = {word: int(said["number"]) for word, said in WORDS.items() if "number" in said}
-_PARTS = "|".join(word for word, said in WORDS.items() if "part" in said)
 
 
 @dataclass(frozen=True)
@@ -232,8 +241,6 @@ class Unit:
 
     text: str
     means: Mapping[str, Any]
-    is_tied: bool = False
-    """A hyphen joins it to the next."""
 
 
 def read_units(text: str) -> list[Unit]:
@@ -247,7 +254,6 @@ def read_units(text: str) -> list[Unit]:
     for pattern, instead in _SPELT:
         plain = re.sub(pattern, instead, plain)
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
-    plain = re.sub(rf"\b([a-z]+) and ([a-z]+) ({_PARTS})s\b", _shared, plain)
     plain = _BARE.sub(lambda found: _with_unit(found, plain), plain)
     for purpose in _PURPOSE.findall(plain):
         asks = {what for word in key_of(purpose) for what in WORDS.get(word, ())} & {"motion", "number"}
@@ -257,23 +263,15 @@ def read_units(text: str) -> list[Unit]:
     while k < len(raw):
         kind, word = raw[k]
         for length in (4, 3, 2, 1):
-            said = " ".join(item[1].rstrip("~") for item in raw[k : k + length])
+            said = " ".join(item[1] for item in raw[k : k + length])
             if length == 1 or said in WORDS:
                 break
         means = WORDS.get(said, {}) if kind == "word" else {kind: said}
-        tied = raw[min(k + length, len(raw)) - 1][1].endswith("~")
-        units.append(Unit(said, {"word": word, **means} if kind == "word" else means, tied))
+        if kind == "word":
+            means = {"word": word, **(means or {"plain": word} if _OPINION.match(said) else means)}
+        units.append(Unit(said, means))
         k += length
     return units
-
-
-def _shared(found: re.Match[str]) -> str:
-    """Give each of two kinds of parts its noun: hour and minute hands."""
-    first, second, noun = found.groups()
-    known = words_of("number color material part plain motion having filler")
-    if known & {what for word in key_of([first, second]) for what in WORDS.get(word, ())}:
-        return found[0]
-    return f"{first} {noun} and {second} {noun}"
 
 
 def _with_unit(found: re.Match[str], text: str) -> str:
@@ -295,7 +293,8 @@ def _refuse_unreadable(text: str, plain: str) -> None:
         raise InputError(f"The text {shown} is not English as far as can be seen. Describe the object in English.")
     if len(plain.split()) > LONGEST:
         raise InputError(f"The text has {len(plain.split())} words; at most {LONGEST} describe one object.")
-    if re.search(rf"\bminus (?!{_NUMBER} ?(?:{_UNIT}))|\bnegative\b|(?:^|\s)-\s?\d+ (?!to |{_UNIT})[a-z]+", plain):
+    minus = r"(?<!plus/)(?<!plus )(?<!or )\bminus"
+    if re.search(rf"{minus} (?!{_NUMBER} ?(?:{_UNIT}))|\bnegative\b|(?:^|\s)-\s?\d+ (?!to |{_UNIT})[a-z]+", plain):
         raise InputError(f"The text {shown} asks for a negative number. Give counts above zero.")
 
 

@@ -1,8 +1,8 @@
 """English into a typed request: the kind, sizes, counts, looks, sides, rows, ranges and openings; the rest is listed.
 
-A sentence is read phrase by phrase: a noun with what stands before it, then what is said of it. Every word is one of
-these: the kind, a field of the request (which is measured on the object), a word of the kind's own names and
-description, a word that asks for nothing by its place in the grammar, or it is listed as not read.
+A sentence is read phrase by phrase: a noun with what is before it, then what is said of it. Each phrase fills fields
+of the request, and remembers which words it took. The object is built and measured; a word of content is *read* if it
+is the kind's name, or if a field took it that was measured, or if a part is called so. All others are listed.
 """
 
 from __future__ import annotations
@@ -17,11 +17,14 @@ from kinematify.generate.delivery import (
     are_round,
     count_parameter,
     deliver,
+    goes_towards,
+    is_at,
     moves_so,
     names_called,
+    on_both_sides,
     stands_in,
 )
-from kinematify.generate.english import CLAIMS, OF_SOME, OPINION, ROLES, WORDS, Unit, read_units, values_of, vocabulary
+from kinematify.generate.english import OF_SOME, ROLES, WORDS, Unit, read_units, values_of, vocabulary
 from kinematify.generate.kind_search import (
     key_of,
     kind_called,
@@ -36,9 +39,10 @@ from kinematify.generate.procedural.layout import CELLS
 from kinematify.generate.request import request_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from kinematify.generate.library.kind import Kind
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.parameter import Parameter
     from kinematify.generate.request import Request
 
@@ -48,10 +52,12 @@ _STILL = words_of("shelf compartment top back front bottom side rack frame")
 """Nouns that are open, and do not stand open."""
 _NAMED = words_of("tilt pan lift swing")
 """Motions that are nouns behind an article."""
+_CONTENT = "qxr#csSmMNHnZwagBLWk=Te"
+"""Roles of words that ask for something."""
 _NOUN = (
-    r"[dP_]{0,2}(?:~+[^,]|~|[#qxDcsfamSgnNZwHu_]|(?<=c)&(?=c))*?"
-    r"(?:N(?![vpioqrLwnNZ])|H(?![piodsvqracmfSnZwN~])|[nZ](?![wnNZ])|w(?![acfswnNZ~])"
-    r"|(?:(?<=[dcm])|(?<=~v))s(?![acfswnNZ~#]))"
+    r"[dP_]{0,2}(?:[#qxDcsfamSgnNZwHu_o]|(?<=[mM])v|(?<=c)&(?=c))*?"
+    r"(?:N(?![vpioqrLwnNZ])|H(?![piodsvqracmfSnZwN])|[nZ](?![wnNZ])|w(?![acfswnNZ])"
+    r"|(?:(?<=[dcm])|(?<=mv))s(?![acfswnNZ#]))"
 )
 _PHRASES = {
     "sign": "[,&]",
@@ -60,24 +66,25 @@ _PHRASES = {
     "having": "[hW]",
     "relation": "L",
     "both_sides": "[pi]P_",
-    "place_side": "[pi][dP]{0,2}(?P<side>s)(?:_*=|_*(?![acfswnNZ~]))",
+    "place_side": "[pi][dP]{0,2}(?P<side>s)_*(?![acfswnNZo])",
     "made": f"Y[^,h#q]*|[pio][pif_]*(?:(?=[qrx])|(?=c)(?!{_NOUN}))",
     "noun": f"[pio]?{_NOUN}|[pio]",
     "hinge": "H[pdP_i]*(?P<edge>s)_*",
-    "verb": "(?P<words>[mMNHSgtke](?:[mMNSHgtkevf_d]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
+    "verb": "(?P<words>(?:g(?!b)|[mMNSHtke])(?:[mMNSHgtkevf_d]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
     "(?:[piodfvb_]*(?P<far>[qr])(?!D)(?:B|ok|k|(?P<then>[Sv]+))?)?",
-    "length": "D[bpiodf_,]{0,4}(?P<long>q)",
-    "attribute": "[cqxs]|~+.",
+    "attribute": "[cqxs]",
     "each": "P",
-    "rest": ".[wa]*",
+    "rest": ".",
 }
 """What a sentence is made of, in the letters of `ROLES`; the first that fits is read by the method of its name."""
 _PHRASE = "|".join(f"(?P<{name}>{pattern})" for name, pattern in _PHRASES.items())
 _LIMIT = ".*?(?=[,hWRLbPpiY]|(?<!#)o|(?<!g)S(?=[^,]))"
 """Where the name of the whole ends at the latest."""
-_TOY = 0.6
-"""A toy is no larger [m]."""
 Match = re.Match[str]
+Facts = dict[str, Any]
+"""Of `PartRequest`; besides, `grid` (columns and rows, 0 of what nobody said), `each_side`, `per` (a noun), `round` and
+`corner`, a second side; and, until a noun is found, `article`, `pick` (the left one) and `bare` (a length)."""
+_INNER = ("grid", "each_side", "per", "round", "corner")
 _OPPOSITE = {"left": "right", "right": "left"}
 
 
@@ -100,22 +107,6 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
 
 
 @dataclass(kw_only=True)
-class _Thing:
-    """What is said of the parts of one name, or of the whole."""
-
-    facts: dict[str, Any] = field(default_factory=dict)
-    """Of `PartRequest`; besides, `grid`, `each_side`, `article` and `bare`, a length that is not named."""
-    said: list[str] = field(default_factory=list)
-    """Words."""
-    odd: list[str] = field(default_factory=list)
-    """Words that are not read."""
-    is_guess: bool = False
-    """It may be a part; words not read where the object has none."""
-    grid: tuple[int, int] | None = None
-    """Columns and rows in which they are to stand, 0 of what nobody said how many."""
-
-
-@dataclass(kw_only=True)
 class Sentence:
     """A sentence that is read from left to right; what is said belongs to the last noun, or to the whole."""
 
@@ -125,24 +116,26 @@ class Sentence:
     family: Kind = field(init=False)
     words: Mapping[str, Mapping[str, Any]] = field(init=False)
     """Of the kind."""
-    own: set[str] = field(init=False)
-    """Words of the names and of the description of the kind."""
     start: int = 0
     """Where the name begins."""
     stop: int = 0
     """Where it ends."""
     roles: str = ""
     """One letter per unit, see `_role`."""
-    values: dict[str, Any] = field(default_factory=dict)
-    things: dict[str, _Thing] = field(default_factory=dict)
+    taken: dict[int, str] = field(default_factory=dict)
+    """Unit -> the noun of which it says something, empty for the whole; ``-`` asks for nothing, ``!`` is not read."""
+    values: Facts = field(default_factory=dict)
+    things: dict[str, Facts] = field(default_factory=dict)
     """By noun; the whole by an empty one."""
-    ahead: dict[str, Any] = field(default_factory=dict)
-    """Facts of the next noun: a row of knobs, no doors."""
+    guesses: set[str] = field(default_factory=set)
+    """Nouns that may be parts; words not read where the object has none."""
+    ahead: Facts = field(default_factory=dict)
+    """Facts of the next noun: a row of knobs, no doors, pull the handle."""
     faults: list[str] = field(default_factory=list)
     """Values that the kind cannot have."""
     notes: list[str] = field(default_factory=list)
-    moves: list[tuple[str, str]] = field(default_factory=list)
-    """Motions of the whole, with the words that say it."""
+    moves: list[tuple[str, Any, list[int]]] = field(default_factory=list)
+    """Motions and form of the whole, with the units that say it."""
     copies: int = 1
     subject: str = ""
     """Noun of the last part; empty for the whole."""
@@ -154,10 +147,12 @@ class Sentence:
     """In a clause that says where a hinge is."""
     is_shown: bool = False
     """In a clause such as *with the lid open*."""
+    is_pushed: bool = False
+    """Behind *pull the handle*."""
     fresh: bool = False
     """Nothing but attributes since the last comma, which are of the whole."""
-    each: int = 1
-    """How many there are of what each has such."""
+    each: str = ""
+    """Each of what has what follows."""
     instead_of: str = ""
 
     # ---- the kind --------------------------------------------------------------------------------------------------
@@ -170,7 +165,7 @@ class Sentence:
         """
         words = [lemma(unit.text) if "word" in unit.means else "" for unit in self.units]
         self._assign_roles({})
-        first = _match("[^wacsmSNMntDuTB~]*", self.roles, 0).end() % len(self.roles)
+        first = _match("[^wacsmSNMntDuTB]*", self.roles, 0).end() % len(self.roles)
         limit = _match(_LIMIT, self.roles, first + 1).end()
         found = self._named(words, limit)
         for k in range(limit) if found is None else ():
@@ -192,9 +187,7 @@ class Sentence:
             self.instead_of, found = head, (near[0], 0, limit)
         self.family, self.start, self.stop = found
         self._assign_roles(vocabulary(self.family))
-        known = [*self.family.words, self.family.about, *sum(self.family.part_words.values(), ())]
-        known += [word for item in self.family.parameters for word in item.nouns]
-        self.own = {key for word in known for key in key_of(word) if "side" not in WORDS.get(key, ())}
+        self._take(range(self.start, self.stop))
 
     def _assign_roles(self, words: Mapping[str, Mapping[str, Any]]) -> None:
         self.words, self.roles = words, ""
@@ -207,11 +200,9 @@ class Sentence:
         word, means, before = self._text(k), self.units[k].means, self.roles[-1:] or ","
         own = self.words.get(lemma(word), {}).keys() & {"part", "length"} and "side" not in means
         role = next((role for what, role in ROLES.items() if what in means), "")
-        if self.units[k].is_tied:
-            role = "~"
-        elif word.startswith("hinge"):
+        if word.startswith("hinge"):
             role = "H"
-        elif before in ("dwh" if word in _NAMED else "sDfc" if word in ("one", "ones") else ""):
+        elif before in ("dwh" if word in _NAMED else "sDfcP" if word in ("one", "ones") else ""):
             role = "n"  # its tilt, the left one
         elif own:
             role = "N" if "motion" in means else "n" if word == lemma(word) else "Z"
@@ -221,7 +212,7 @@ class Sentence:
             role = "D" if before == "q" else "p"
         elif role == "m" and word.endswith("s") and word[:-1] in WORDS:
             role = "M"
-        return role or ("v" if word.endswith("ly") else "a" if re.search("[^e]ed$|ing$", word) else "w")
+        return role or ("f" if word.endswith("ly") else "a" if re.search("[^e]ed$|ing$", word) else "w")
 
     def _named(self, words: list[str], limit: int) -> tuple[Kind, int, int] | None:
         for start in range(limit):
@@ -239,16 +230,19 @@ class Sentence:
         Raises:
             InputError: They contradict each other.
         """
-        head, before = lemma(self._text(self.stop - 1)), _Thing()
-        self._describe(self.roles.rfind("d", 0, self.start) + 1, self.start, before)
-        count, name = before.facts.pop("count", 1), self._text(self.stop - 1)
+        head, name = lemma(self._text(self.stop - 1)), self._text(self.stop - 1)
+        begin = self.roles.rfind("d", 0, self.start) + 1
+        self._take(range(begin), "-")
+        facts, used = self._described(begin, self.start)[:2]
+        count, pair = facts.pop("count", 1), "pair" in self._text(begin, self.start)
         if count > 1 and _counted(self.family, head):
-            self._add(head, _Thing(facts={"count": count}))
-        elif name != head and not ("pair" in before.said and any(word.endswith(name) for word in self.family.words)):
+            self._add(head, used, count=count)
+        elif name != head and not (pair and any(word.endswith(name) for word in self.family.words)):
             self.copies = count
-        elif "pair" not in before.said and count > 1:
-            before.odd += before.said
-        self._give("", before)
+        elif not pair and count > 1:
+            used = [k for k in used if self.roles[k] not in "#x"]
+        self._take(k for k in used if self.roles[k] == "#")
+        self._add("", used, **facts)
         k = self.stop
         while k < len(self.units):
             found = _match(_PHRASE, self.roles, k)
@@ -261,35 +255,37 @@ class Sentence:
     def _text(self, k: int, end: int | None = None) -> str:
         return " ".join(unit.text for unit in self.units[max(k, 0) : k + 1 if end is None else end]) if k >= 0 else ""
 
-    def _thing(self, noun: str) -> _Thing:
-        return self.things.setdefault(noun, _Thing())
-
-    def _odd(self, words: str, noun: str = "") -> None:
-        self._thing(noun).odd.append(words)
+    def _take(self, units: Iterable[int], noun: str = "") -> None:
+        for k in units:
+            self.taken.setdefault(k, noun)
 
     @property
     def _owner(self) -> str:
         return "" if self.fresh else self.subject
 
+    def _count(self, noun: str) -> int:
+        return int(self.things.get(noun, {}).get("count", 0))
+
     def _sign(self, found: Match) -> int:
         k, end = found.start(), self.roles.index(",", found.end())
+        self.is_pushed = False
         if found[0] == ",":
-            self.fresh, self.is_shown, self.is_hinged, self.each = True, False, False, 1
+            self.fresh = not re.match("qD?,[^,]*qD,", self.roles[max(k - 2, 0) : k + 5].lstrip("#nNZ"))
+            self.is_shown, self.is_hinged, self.each = False, False, ""
             if OF_SOME.search(self._text(k + 1, end)):
-                self._odd(self._text(k + 1, end))
+                self._take(range(k + 1, end), "!")
                 return end
         return k + 1
 
     def _clause(self, found: Match) -> int:
-        """Read how a relative clause begins; one about use asks for nothing, one that is not known is listed."""
+        """Read how a relative clause begins; one about use asks for nothing but its numbers."""
         verb = found.end()
         end = _match("[^,hR]*", self.roles, verb).end()
-        self.is_shown = False
-        if self.roles[verb] in "wa" or (self.roles[verb] == "u" and set(self.roles[verb:end]) & set("#q")):
-            self._odd(self._text(verb, end), self.subject)
+        self.is_shown = self.fresh = False
         if self.is_plural and self.roles[verb] == "M":
             self.subject = ""  # a fan with three blades that turns
-        self.fresh = False
+        if self.roles[verb] == "u":
+            self._take((k for k in range(verb, end) if self.roles[k] not in "#q"), "-")
         return end if self.roles[verb] in "uwa" else verb
 
     def _rows(self, found: Match) -> None:
@@ -297,20 +293,23 @@ class Sentence:
         beside, is_next = self._mean(found.start(), "beside"), not found["at"] or not self.subject
         line = beside or self._mean(self.roles.index("=", found.start()), "lines")
         lines, per = (int(self._mean(found.start(name), "number") or 0) for name in ("lines", "per"))
-        facts, lines = self.ahead if is_next and not beside else self._thing(self.subject).facts, max(lines, 1)
+        is_next, lines = is_next and not beside, max(lines, 1)
+        facts = self.ahead if is_next else self.things.setdefault(self.subject, {})
+        if not is_next and not self.subject:  # nightstands next to each other
+            self._take(range(*found.span()) if self.copies > 1 else ())
+            return
         if per:
             facts.setdefault("count", lines * per)
         each, rest = divmod(facts.get("count", 0), lines)
         facts["grid"] = (each, lines) if line == "row" else (lines, each)
-        if rest:
-            self._odd(self._text(found.start(), found.end()))
+        if not rest:
+            self._take(range(*found.span()), self.subject if not is_next else "")
 
     def _having(self, found: Match) -> None:
         k = found.start()
-        if found[0] == "W":
-            self.ahead = {"count": 0} if self._span(k + 1) else {}
-            if not self.ahead:
-                self._odd(self._text(k, k + 2))
+        self.ahead = {"count": 0} if found[0] == "W" and self._span(k + 1) else {}
+        if self.ahead:
+            self._take([k])
         self.is_shown = self._text(k) == "with" and self._text(k + 1) in ("the", "its", "their")
         self.fresh = False
 
@@ -326,139 +325,119 @@ class Sentence:
                 return start, end
         return end - 1 - (end - 1 > k and self.roles[end - 2] in "wn"), end
 
-    def _part(self, k: int, head: int, end: int, *, is_place: bool = False) -> str:
+    def _part(  # noqa: PLR0912 - one per form of a noun
+        self, k: int, head: int, end: int, *, is_place: bool = False
+    ) -> str:
         """Keep what is said before a noun, of the part that it means; returns what it is called."""
         words = self._text(head, end)
         key = " ".join(key_of(words))
-        thing = _Thing()
-        is_choice = self._describe(k, end, thing, head=head)
-        facts, ahead, self.ahead = thing.facts, self.ahead, {}
+        facts, used, is_choice = self._described(k, end, head)
         meanings = self.words.get(key, {})
         pick, article = facts.pop("pick", ""), facts.pop("article", False) and "count" not in facts
-        thing.is_guess = is_place or is_choice or "part" not in meanings
+        is_guess = is_place or is_choice or "part" not in meanings
         if words in ("one", "ones") and self.several:
-            key, thing.is_guess = self.several, False
-            facts.pop("count", None)
-        if is_place and (key in _WHERE or not (meanings or key in self.things)):
+            key, is_guess = self.several, False
+            if words == "one":
+                facts.pop("count", None)
+        if is_place and not is_choice and (key in _WHERE or not (meanings or key in self.things)):
+            self._take(range(head, end) if key in _WHERE else (), "-")
             return key
-        if self._mean(end, "stroke") and "bare" in facts:  # a 10 cm jaw opening
-            facts |= {"range": (0.0, facts.pop("bare")), "motion": "slide"}
-        elif "bare" in facts:
-            facts.setdefault("size", {}).setdefault("length", facts.pop("bare"))
-        if self.each > 1 and not is_place:
-            facts["count"] = facts.get("count", 1) * self.each
-        facts |= ahead
-        is_plural = words != lemma(words)
-        noun = f"{pick} {key}".strip()
+        if "bare" in facts:
+            facts["size"] = {"length": facts.pop("bare"), **facts.get("size", {})}
+        if self.each and not is_place:
+            if times := self._count(self.each):
+                facts["count"] = facts.get("count", 1) * times
+            elif facts.get("count", 1) == 1:
+                facts["per"] = self.each
+        facts |= self.ahead
+        self.ahead, is_plural, noun = {}, words != lemma(words), f"{pick} {key}".strip()
         if pick and facts.get("count") == 1:
             del facts["count"]
         elif article and noun in self.things:
-            if (facts | self.things[noun].facts).keys() - {"count"}:  # a glass door above a wooden door
-                thing.odd.append(words)
-            facts["count"] = self.things[noun].facts.pop("count", 1) + 1
+            if (facts | self.things[noun]).keys() - {"count"}:  # a glass door above a wooden door
+                used = []
+            facts["count"] = self.things[noun].pop("count", 1) + 1
         elif "count" not in facts and not (pick or noun in self.things or is_choice or is_place):
             counted = _counted(self.family, noun)
             several = {"at_least" if counted is None or counted.default else "count": 2}
-            facts |= several if is_plural else {"count": 1} if article else {}
+            facts |= several if is_plural else {"count": 1} if article and "per" not in facts else {}
         if key in _STILL:
             facts.pop("open", None)
-        thing.said = [] if is_place or (is_choice and not facts) else [self._text(k + (self.roles[k] == "d"), end)]
-        noun = self._add(noun, thing)
+        if is_guess and noun not in self.things:
+            self.guesses.add(noun)
+        if facts or not is_choice:
+            noun = self._add(noun, [*used, *range(head, end)], **facts)
         if not is_place:
             self.subject, self.is_plural, self.fresh = noun, is_plural, False
             self.several = key if is_plural else self.several
         return noun
 
-    def _describe(self, k: int, end: int, thing: _Thing, head: int | None = None) -> bool:
-        """Read what stands before a noun, or before the name of the whole; returns if the noun is a choice of the kind.
+    def _described(self, k: int, end: int, head: int | None = None) -> tuple[Facts, list[int], bool]:
+        """Read what is before a noun, or before the name of the whole.
 
         Args:
             k: Where it begins.
             end: Where the noun ends.
-            thing: Gets what is said.
             head: Where the noun begins; none before the name.
+
+        Returns:
+            Facts, the units that say them, and if the noun is a choice of the kind.
         """
-        stop, is_choice = end if head is None else head, False
+        stop, is_choice, facts, used = end if head is None else head, False, Facts(), list[int]()
         while k < end:
-            last = next(j for j in range(k, end) if not self.units[j].is_tied or j == end - 1)
-            if chosen := self._choice(k, end, thing, head):
+            if chosen := self._choice(k, end, facts, head):
                 is_choice |= chosen > stop
                 k = chosen
             elif k >= stop:
                 break
-            elif last > k and last < stop:
-                self._tied(k, last, thing)
-                k = last + 1
             else:
-                k += self._modifier(k, stop, thing, is_part=head is not None)
-        return is_choice
+                k += self._modifier(k, stop, facts, used, is_part=head is not None)
+        return facts, used, is_choice
 
-    def _modifier(self, k: int, stop: int, thing: _Thing, *, is_part: bool) -> int:  # noqa: PLR0912 - one per class
+    def _modifier(  # noqa: PLR0912 - one per class
+        self, k: int, stop: int, facts: Facts, used: list[int], *, is_part: bool
+    ) -> int:
         """Read one unit before a noun; returns how many were read."""
-        facts, word, behind, role = thing.facts, self._text(k), self._text(k + 1), self.roles[k]
-        thing.said.append(word)
+        word, behind, role = self._text(k), self._text(k + 1), self.roles[k]
         look = "color" if self._mean(k, "color") else "material"
+        said: Facts = {}
         if role == "#":
             number = float(self._mean(k, "number").replace(",", "."))
-            one = {behind, self._text(stop)} == set(map(lemma, (behind, self._text(stop)))) and number > 1
-            if one and k + 1 < stop and self.roles[k + 1] == "n":  # a six drawer dresser
-                self._add(behind, _Thing(facts={"count": int(number)}))
-                return 2
-            if one and k + 1 < stop and self.roles[k + 1] in "wa" and is_part:  # a three spoke handle
-                thing.odd.append(f"{word} {behind}")
-                return 2
-            if number != int(number) or "count" in facts:
-                thing.odd.append(word)
-            else:
-                facts["count"] = int(number)
+            if k + 1 < stop and behind == lemma(behind) and number > 1 and self._text(stop) == lemma(self._text(stop)):
+                if self.roles[k + 1] == "n":  # a six drawer dresser
+                    self._add(behind, [k, k + 1], count=int(number))
+                return 1 + (self.roles[k + 1] in "nwa")  # or a three spoke handle, of which nothing is known
+            said = {"count": int(number)} if number == int(number) and "count" not in facts else {}
         elif role in "qx":
-            return self._size(k, thing)
-        elif self._mean(k, look) and not (word == "paper" and is_part):
-            if facts.setdefault(look, self._mean(k, look)) != self._mean(k, look):
-                thing.odd.append(word)
+            return self._size(k, facts, used)
+        elif self._mean(k, look):
+            value = self._mean(k, look)
+            stems = (behind[:-1], behind[:-2]) if self.roles[k + 1] == "a" and k + 1 < stop else ()
+            stem = next((stem for stem in stems if "part" in self.words.get(stem, {})), "")
+            if stem:  # orange handled
+                self._add(stem, [k, k + 1], **{look: value})
+                return 2
+            said = {look: value} if facts.get(look, value) == value else {}
         elif role == "s":
-            facts["pick"] = word
+            said = {"pick": word}
         elif word in ("a", "an"):
-            facts["article"] = True
+            said = {"article": True}
         elif role == "S":
-            facts["open"] = float(self._mean(k, "state"))
-        elif role in "mMH" and not (is_part and self._mean(k, "name")):
-            if is_part:
-                facts.setdefault("motion", self._mean(k, "motion"))
-            else:
-                self.moves.append((self._mean(k, "motion"), word))
-        elif not self._asks_nothing(k, stop, is_part=is_part):
-            thing.odd.append(word)
+            said = {"open": float(self._mean(k - 1, "degree") or self._mean(k, "state"))}
+            used += [k - 1] if self.roles[k - 1] == "g" else []
+        elif word == "round":
+            said = {"round": True}
+        elif role in "mMH" and not (is_part and self._mean(k, "name") and not self._mean(k + 1, "towards")):
+            said = {"motion": self._mean(k, "motion")}
+            if towards := self._mean(k + 1, "towards"):
+                said["towards"] = towards
+                used.append(k + 1)
+        for name, value in said.items():
+            facts.setdefault(name, value)
+        used += [k] if said else []
         return 1
 
-    def _asks_nothing(self, k: int, stop: int, *, is_part: bool) -> bool:
-        """True of a word before a noun that is a name of the kind's, an opinion, or what the part is for."""
-        word = self._text(k)
-        bare = re.search("[^e]ed$|a[lr]$", word) or self._mean(k, "form")
-        known = self.roles[k] not in "wan" or lemma(word) in self.own or OPINION.match(word) is not None
-        return known or (not bare and ((is_part and k == stop - 1) or self.roles[k + 1] == "c"))
-
-    def _tied(self, k: int, last: int, thing: _Thing) -> None:
-        """Read words that hyphens join: orange-handled, drop-down, half-open."""
-        word, facts = self._text(last), dict[str, Any]()
-        thing.said.append("-".join(self._text(k, last + 1).split()))
-        for j in range(k, last + 1):
-            for what in ("color", "material", "motion", "degree", "number"):
-                if what in self.units[j].means:
-                    facts.setdefault(what, self._mean(j, what))
-        facts |= {"count": int(facts.pop("number"))} if "number" in facts else {}
-        stems = (word.removesuffix("ed"), word.removesuffix("d"), word[:-3], word)
-        noun = next((stem for stem in map(lemma, stems) if "part" in self.words.get(stem, {})), "")
-        if noun and facts and "motion" not in facts:
-            self._add(noun, _Thing(facts=facts))
-        elif "degree" in facts and self._mean(last, "state"):
-            thing.facts["open"] = float(facts["degree"])
-        elif facts and "count" not in facts and ("motion" in facts or self._mean(last, "filler")):
-            thing.facts |= facts
-        elif not (CLAIMS.match(thing.said[-1]) or set(self._text(k, last + 1).split()) <= self.own):
-            thing.odd.append(thing.said[-1])
-
-    def _choice(self, k: int, end: int, thing: _Thing, head: int | None) -> int:
+    def _choice(self, k: int, end: int, facts: Facts, head: int | None) -> int:
         """Read a value of a parameter of the kind; returns where it ends, or 0."""
         for after in range(end, k, -1):
             words = self._text(k, after)
@@ -468,65 +447,62 @@ class Sentence:
             name, value = meanings["choice"]
             behind = lemma(self._text(after)) if after < end else ""
             own = self.words.get(behind, {}).get("part") == "own" or behind in name
-            is_counted = "count" in thing.facts or words != lemma(words)
+            is_counted = "count" in facts or words != lemma(words)
             if (behind and not own and head is not None) or (meanings.get("part") and not behind and is_counted):
                 continue
             if self.ahead.get("count") == 0:
                 value = "no" if value == "yes" else "none"
                 self.ahead = {}
-            self._take(name, value, words)
+            self._set(name, value, range(k, after))
             return after
         return 0
 
-    def _add(self, noun: str, thing: _Thing) -> str:
-        """Give what is said to a part; what it has otherwise is not read. Returns the noun."""
-        own = self.things.setdefault(noun, _Thing(is_guess=thing.is_guess))
-        facts, phrase = thing.facts, " ".join(thing.said)
-        count = own.facts.get("count", facts.get("count"))
+    def _add(self, noun: str, units: Iterable[int], **facts: Any) -> str:
+        """Give what is said to a part, or to the whole; what it has otherwise is not read. Returns the noun."""
+        if not noun:
+            for what, value in facts.items():
+                self._whole(what, value, units)
+            return noun
+        own = self.things.setdefault(noun, {})
+        count = own.get("count", facts.get("count"))
         if count != facts.get("count", count):
-            if self._cell(noun) and ((facts | own.facts).keys() & {"side", "grid", "row"}):
-                return self._add(f"{noun} ", thing)  # another group of the same
-            if (facts | own.facts).keys() & {"side", "color", "material"}:
-                own.odd.append(phrase)
+            if self._cell(noun) and ((facts | own).keys() & {"side", "grid", "row"}):
+                return self._add(f"{noun} ", units, **facts)  # another group of the same
+            if (facts | own).keys() & {"side", "color", "material"}:
                 return noun
             raise InputError(f"The text says {count} and {facts['count']} of {noun!r}. Say one.")
-        own.said.append(phrase)
-        own.odd += thing.odd
+        fits = True
         for name, value in facts.items():
             if name == "size":
-                own.facts["size"] = {**own.facts.get("size", {}), **value}
-            elif own.facts.get(name) == "move":
-                own.facts[name] = value
-            elif own.facts.setdefault(name, value) != value and value != "move":
-                own.odd.append(phrase or str(value))
+                own["size"] = {**own.get("size", {}), **value}
+            elif own.get(name) == "move":
+                own[name] = value
+            elif name == "side" and own.get(name, value) != value:  # at the top left
+                fits &= own.setdefault("corner", value) == value
+            else:
+                fits &= own.setdefault(name, value) in (value, "move") or value == "move"
+        self._take(units if fits else (), noun)
         return noun
 
     # ---- attributes ------------------------------------------------------------------------------------------------
 
-    def _give(self, owner: str, thing: _Thing) -> None:
-        """Give attributes to a part, or to the whole."""
-        if owner:
-            self._add(owner, thing)
-            return
-        self._thing("").odd += thing.odd
-        for what, value in thing.facts.items():
-            self._whole(what, value, " ".join(thing.said))
-
     def _fact(self, found: Match, owner: str | None = None, **facts: Any) -> None:
-        said = [self._text(found.start(), found.end())]
-        self._give(self._owner if owner is None else owner, _Thing(facts=facts, said=said))
+        self._add(self._owner if owner is None else owner, range(*found.span()), **facts)
 
-    def _size(self, k: int, thing: _Thing) -> int:
+    def _size(self, k: int, facts: Facts, used: list[int]) -> int:
         """Read a size and the dimension behind it; returns how many units were read."""
-        numbers, sizes = values_of(self._text(k)), thing.facts.setdefault("size", {})
+        numbers, sizes = values_of(self._text(k)), facts.setdefault("size", {})
         value, si = numbers[-1]
+        used.append(k)
         if self.roles[k] == "x":
             if not si:
-                thing.facts |= {"count": int(numbers[0][0] * value), "grid": (int(value), int(numbers[0][0]))}
+                facts |= {"count": int(numbers[0][0] * value), "grid": (int(value), int(numbers[0][0]))}
                 return 1 + (self._text(k + 1) == "grid") + (self._text(k + 2) == "of")
             names = ["width", "depth", "height"]
             usual = {item.name: float(item.default) for item in self.family.parameters if item.name in names}
-            if len(numbers) == 2 and "depth" not in usual:
+            if len(numbers) == 2 and (
+                "depth" not in usual or any(unit.means.get("dimension") == "depth" for unit in self.units)
+            ):
                 names.remove("depth")
                 if (usual.get("width", 0.0) < usual.get("height", 0.0)) is (numbers[0][0] > 1.5 * value):
                     names.reverse()  # a door of 2 m by 0.8 m
@@ -535,48 +511,41 @@ class Sentence:
         step = k + 1 + (self.roles[k + 1 : k + 3] in ("iD", "oD"))
         if si == "m" and (name := self._mean(step, "dimension")):
             sizes[name] = value
+            used.append(step)
             return step + 1 - k
         if si == "m":
-            thing.facts["bare"] = value
+            facts["bare"] = value
         else:
-            thing.odd.append(self._text(k))
+            used.remove(k)
         return 1
 
-    def _length(self, found: Match) -> None:
-        k = found.start("long")
-        self._fact(found, size={self._mean(found.start(), "dimension"): values_of(self._text(k))[0][0]})
-
     def _attribute(self, found: Match) -> int:
-        """Read a look, a size or a side that stands alone."""
-        k, thing, owner = found.start(), _Thing(), self._owner
-        if found[0] == "q" and "motion" in WORDS.get(owner.split(" ")[-1], ()):
+        """Read a look, a size or a side that is alone."""
+        k, facts, used, owner = found.start(), Facts(), list[int](), self._owner
+        if found[0] == "q" and ("motion" in WORDS.get(owner.split(" ")[-1], ()) or self.is_pushed):
             return self._range(found, k, owner)  # a gas lift of 10 cm
-        if found[0][0] == "~":
-            self._tied(k, found.end() - 1, thing)
-        else:
-            k += self._modifier(k, k, thing, is_part=False)
-        side = WORDS.get(thing.facts.pop("pick", ""), {}).get("side")
-        thing.facts |= {"side": side} if side and owner else {}
-        if owner and "bare" in thing.facts:
-            thing.facts["size"]["length"] = thing.facts.pop("bare")
-        self._give(owner, thing)
-        return max(k, found.end())
+        k += self._modifier(k, k, facts, used, is_part=False)
+        side = WORDS.get(facts.pop("pick", ""), {}).get("side")
+        facts |= {"side": side} if side and owner else {}
+        if owner and "bare" in facts:
+            facts["size"]["length"] = facts.pop("bare")
+        self._add(owner, used if facts else (), **facts)
+        return k
 
-    def _range(self, found: Match, k: int, owner: str, how: str = "move") -> int:
+    def _range(self, found: Match, k: int, owner: str, how: str = "move", **facts: Any) -> int:
         """Give a range, with the motion that its unit means; it is not read where the text says another motion."""
-        numbers, words = values_of(self._text(k)), [self._text(found.start(), found.end())]
+        numbers = values_of(self._text(k))
         (low, _), (value, si) = numbers[0], numbers[-1]
         low = -value if self._mean(k, "symmetric") or "B" in found[0] else low if self.roles[k] == "r" else 0.0
         if si == "m" and low > 0.0:
             low, value = 0.0, value - low
         usual = "slide" if si == "m" else "hinge"
         owner = owner or usual
-        for other in (self._thing(owner).facts.get("motion", usual), usual):
+        for other in (self.things.get(owner, {}).get("motion", usual), usual):
             how = other if how == "move" else how
-        if (how in ("slide", "lift")) is (si == "m"):
-            self._add(owner, _Thing(facts={"range": tuple(sorted((low, value))), "motion": how}, said=words))
-        else:
-            self._add(owner, _Thing(facts={"motion": how}, odd=[f"{owner} {words[0]}"]))
+        fits = (how in ("slide", "lift")) is (si == "m")
+        facts |= {"range": tuple(sorted((low, value))), "motion": how} if fits else {"motion": how}
+        self._add(owner, range(*found.span()) if fits else (), **facts)
         return found.end()
 
     def _hinge(self, found: Match) -> None:
@@ -585,7 +554,7 @@ class Sentence:
         self._fact(found, owner, hinge=self._mean(found.start("edge"), "side"))
 
     def _verb(self, found: Match) -> int:
-        """Read how something moves, how far, or how it stands."""
+        """Read how something moves, how far, or how it is shown."""
         how, share, stands, far, k = "", None, self.is_shown, found.start("far"), found.start()
         owner = self._owner if self.roles[k] in "rq" or self._text(k).endswith("s") else self.subject
         for j in range(*found.span("words")):
@@ -599,12 +568,19 @@ class Sentence:
                 how = how or str(self._mean(j, "motion") or "move")
             stands |= role == "t"
             how = "spin" if role == "e" else how
-        if far > 0 and (stands or found["then"]) and self.roles[far] == "q" and not how:
+        heads = [side for j in range(k, found.end()) if (side := self._mean(j, "towards"))]
+        facts = {"towards": heads[0]} if heads and how else {}
+        if how and far < 0 and self.roles[found.end() - 1] in "md" and self._span(found.end()):
+            self.ahead, self.is_pushed = {"motion": how, **facts}, True  # pull the handle
+            self._take(range(*found.span()))
+        elif far > 0 and self._mean(found.start("then"), "state") == "0":  # 160 cm closed
+            self._fact(found, owner, size={"length": values_of(self._text(far))[0][0]})
+        elif far > 0 and (stands or found["then"]) and self.roles[far] == "q" and not how:
             self._fact(found, owner, open=values_of(self._text(far))[0])
         elif far > 0:
-            self._range(found, far, owner, how or "move")
+            self._range(found, far, owner, how or "move", **facts)
         elif how:
-            self._fact(found, owner, motion=how)
+            self._fact(found, owner, motion=how, **facts)
         elif stands and share is not None:
             self._fact(found, owner, open=share)
         return found.end()
@@ -613,38 +589,43 @@ class Sentence:
 
     def _made(self, found: Match) -> None:
         """Pass over what leads to a size or a material, and what it is for or like."""
+        self._take(range(*found.span()), "-")
 
     def _both_sides(self, found: Match) -> None:
-        facts = self._thing(self.subject).facts
+        facts = self.things.setdefault(self.subject, {})
         facts["each_side"] = True
+        self._take(range(*found.span()), self.subject)
         if "count" in facts and self._text(found.start() + 1) != "both":
             facts["count"] *= 2
 
     def _noun(self, found: Match) -> None:
         """Read a part, or where something is."""
         in_place = self.roles[found.start()] in "pio"
-        k = found.start() + in_place
+        k, subject = found.start() + in_place, self.subject
         if span := self._span(k):
             last, the = self._text(span[1] - 1), self._text(k) in ("the", "its", "their")
             is_place = bool(self._owner) and (the or (last == lemma(last) and self.roles[k] not in "d#"))
-            self._part(k, *span, is_place=in_place and (is_place or lemma(last) in _WHERE))
+            noun = self._part(k, *span, is_place=in_place and (is_place or lemma(last) in _WHERE))
+            if self._text(k) in ("each", "every"):
+                self.each = noun if self.roles[span[1]] == "h" else ""
+                if in_place and noun != subject in self.things:
+                    self.things[subject].setdefault("per", noun)
 
     def _place_side(self, found: Match) -> int:
-        word, side, end = self._text(found.start("side")), self._mean(found.start("side"), "side"), found.end()
-        if self.fresh or not self.subject:
+        side, end = self._mean(found.start("side"), "side"), found.end()
+        if self._text(found.start()) in ("to", "towards") and self.roles[found.start() - 1] in "mMaSv&q":
+            self._fact(found, towards=side)  # slides to the left
+        elif self.fresh or not self.subject:
             if self._span(end + (self.roles[end] == "h")):
                 self.ahead["side"] = side
-            else:
-                self._odd(f"on the {word}")
+                self._take(range(*found.span()))
         elif self.is_hinged and self.subject.startswith(tuple(_OPPOSITE)):
             self._fact(found, hinge=side)  # the left one hinged on the left, the right one on the right
         elif self.subject == "hinge":
             del self.things[self.subject]
-            self._whole("hinge", side, word)
+            self._add("", range(found.start() - 1, end), hinge=side)
         else:
-            count = self._thing(self.subject).facts.get("count", 0)
-            facts: dict[str, Any] = {"grid": (count, 1)} if found[0][-1] == "=" and count else {}
-            self._fact(found, None, side=side, **facts)
+            self._fact(found, side=side)
         return end
 
     def _relation(self, found: Match) -> int:
@@ -658,62 +639,60 @@ class Sentence:
         elif subject:
             other = next((noun for noun in reversed(self.things) if noun not in ("", subject)), "")
         if other in self.things and other != subject:  # above (1) or below (-1) it
-            mine, its = (self._thing(noun).facts for noun in (subject, other))
+            mine, its = (self.things[noun] for noun in (subject, other))
             its.setdefault("row", mine.setdefault("row", its.get("row", 10 + step) - step) + step)
-        elif other in ("", subject):
-            self._odd(self._text(k))
+            self._take([k], subject)
         return end
 
     def _each(self, found: Match) -> None:
         self.fresh = False
         if self.subject.endswith(self.several):
             self.subject = self.several or self.subject
-        self.each = self._thing(self.subject).facts.get("count", 1) if self.roles[found.end()] == "h" else 1
+        self.each = self.subject if self.roles[found.end()] == "h" else ""
 
-    def _rest(self, found: Match) -> int | None:
-        """Pass over what asks for nothing, and list what is not known."""
+    def _rest(self, found: Match) -> None:
+        """Pass over a word, or read in which direction what was named moves."""
         k = found.start()
-        if found[0][0] in "#B" or not self._asks_nothing(k, k, is_part=False):
-            self._odd(self._text(k, found.end()), self._owner)
-            return None
-        if self.is_shown and self._text(k) in ("up", "out"):
-            self._give(self._owner, _Thing(facts={"open": 1.0}))
-        return k + 1
+        if (self.is_pushed or "motion" in self.things.get(self._owner, ())) and self._mean(k, "towards"):
+            self._fact(found, towards=self._mean(k, "towards"))
 
-    # ---- settling --------------------------------------------------------------------------------------------------
+    # ---- the whole -------------------------------------------------------------------------------------------------
 
-    def _take(self, name: str, value: Any, words: str) -> None:
+    def _set(self, name: str, value: Any, units: Iterable[int]) -> None:
         """Set a parameter of the whole."""
+        units = list(units)
         try:
             value = checked(self.family, name, value)
         except InputError as error:
-            self.faults.append(f"{words}: {str(error).rstrip('.')}")
+            self.faults.append(f"{' '.join(map(self._text, units))}: {str(error).rstrip('.')}")
+            self._take(units)
             return
-        if self.values.setdefault(name, value) != value:
-            self._odd(words)
+        if self.values.setdefault(name, value) == value:
+            self._take(units)
 
-    def _whole(self, what: str, value: Any, said: str) -> None:
-        known = {item.name for item in self.family.parameters}
+    def _whole(self, what: str, value: Any, units: Iterable[int]) -> None:
+        known, units = {item.name for item in self.family.parameters}, list(units)
         if what == "bare":
             what, value = "size", {"width" if "width" in known else "length": value}
         if what == "size":
-            sizes = self._thing("").facts
+            sizes = self.things.setdefault("", {})
             for name, size in value.items():
                 if sizes.setdefault(name, size) != size:
                     raise InputError(f"The text says that the {name} is {sizes[name]:g} m and {size:g} m. Say one.")
+            self._take(units)
         elif what in ("color", "material"):
-            self._take(what, value, said)
+            self._set(what, value, [k for k in units if what in self.units[k].means])
         elif what == "open":
-            number, unit = value if isinstance(value, tuple) else (value, "")
-            self._take({"rad": "open_angle", "m": "open_distance", "": "open"}[unit], number, said)
+            if isinstance(value, tuple):
+                self._add("hinge" if value[1] == "rad" else "slide", units, open=value)
+            else:
+                self._set("open", value, units)
         elif what == "hinge" and "hinge_side" in known:
-            self._take("hinge_side", value, said)
+            self._set("hinge_side", value, units)
         elif what == "hinge":
-            self._add("door", _Thing(facts={what: value}, said=[said]))
-        elif what == "motion":
-            self.moves.append((value, said))
-        elif what != "article":
-            self._odd(said)
+            self._add("door", units, hinge=value)
+        elif what in ("motion", "towards", "round"):
+            self.moves.append((what, value, units))
 
     # ---- layouts of fronts -----------------------------------------------------------------------------------------
 
@@ -726,7 +705,7 @@ class Sentence:
     def _lay_out(self) -> None:
         """Write the layout of a front whose fields are placed; fields that are not named are left out."""
         counted = {lemma(item.name): item for item in self.family.parameters if isinstance(item.default, int)}
-        fields = [(cell, thing.facts) for noun, thing in self.things.items() if (cell := self._cell(noun))]
+        fields = [(cell, facts) for noun, facts in self.things.items() if (cell := self._cell(noun))]
         if any(cell != "shelf" and facts.get("count") for cell, facts in fields):
             for cell in sorted((CELLS & counted.keys()) - dict(fields).keys()):
                 self.values.setdefault(counted[cell].name, 0)
@@ -742,7 +721,7 @@ class Sentence:
             if grid := facts.get("grid"):
                 row = " | ".join([cell] * grid[0])
                 text = " / ".join([f"({row})" if grid[0] > 1 else cell] * grid[1])
-            level = {"top": 0, "bottom": 20}.get(side, facts.get("row", 10))
+            level = int({"top": 0, "bottom": 20}.get(side, facts.get("row", 10)))
             for column in _OPPOSITE if both else [side if side in _OPPOSITE else ""] * bool(count):
                 columns.setdefault(column, []).append((level, text))
             if cell == "shelf":
@@ -764,24 +743,20 @@ class Sentence:
         """
         for noun in [noun for noun in self.things if noun.endswith(" ")]:
             first, more = self.things[noun.rstrip()], self.things.pop(noun)
-            kept = {name: first.facts[name] for name in first.facts.keys() - {"row", "side", "grid"}}
-            first.facts = {**kept, "count": first.facts["count"] + more.facts["count"]}
-            first.odd += more.odd
-        rows = sorted({thing.facts["row"] for thing in self.things.values() if "row" in thing.facts})
-        sizes, parts = self._thing("").facts, {}
-        for noun, thing in self.things.items():
-            facts = thing.facts
+            kept = {name: first[name] for name in first.keys() - {"row", "side", "grid"}}
+            self.things[noun.rstrip()] = {**kept, "count": first["count"] + more["count"]}
+        rows = sorted({facts["row"] for facts in self.things.values() if "row" in facts})
+        sizes, parts = self.things.pop("", {}), {}
+        for noun, facts in list(self.things.items()):
             if facts.get("count") == 0 and facts.keys() - {"count", "at_least", "row"}:
                 raise InputError(f"The text says that there is no {noun}, and what it is like. Say one.")
             if (name := self.words.get(noun, {}).get("length")) and "length" in facts.get("size", {}):
-                self._take(name, facts.pop("size")["length"], noun)
-                facts.pop("count", None)
-                thing.said = []
-            thing.grid, _ = facts.pop("grid", None), facts.pop("each_side", None)
+                self._set(name, facts["size"]["length"], [k for k, owner in self.taken.items() if owner == noun])
+                del self.things[noun]
+                continue
             if "row" in facts:
                 facts["row"] = rows.index(facts["row"]) + 1
-            if noun and (facts or thing.said):  # not a choice of which nothing else is said
-                parts[noun] = facts
+            parts[noun] = {name: value for name, value in facts.items() if name not in _INNER}
         named = key_of(self._text(self.start, self.stop))
         usual = next((said for word, said in self.family.usual.items() if key_of(word) == named), {})
         stated = {*sizes, *(item.name for noun in parts if (item := _counted(self.family, noun)))}
@@ -802,34 +777,66 @@ class Sentence:
             InputError: Nothing can be built.
         """
         made = deliver(self.request, seed=seed)
-        lost = {noun for noun in made.missing if self.things[noun].is_guess}
+        blueprint, taken = made.blueprint, dict(self.taken)
+        lost = self.guesses & set(made.missing)
         listed = [why for why in made.differences if not any(why.startswith(f"{noun}: a") for noun in lost)]
-        joints = [joint for joint in made.blueprint.joints if joint.mimic is None]
-        some = {"pan": any, "tilt": any, "spin": any}
-        unread = [said for how, said in self.moves if not some.get(how, all)(moves_so(joint, how) for joint in joints)]
-        for noun, thing in self.things.items():
-            if noun in lost:
-                said = " ".join(thing.said)
-                unread.append(" ".join([*(word for word in thing.odd if word not in said), said]).strip())
-            elif noun not in made.missing:
-                unread += thing.odd
-                names = names_called(self.family, made.blueprint, noun)
-                if "round" in unread and are_round(made.blueprint, names or [made.blueprint.parts[0].name]):
-                    unread.remove("round")
-                columns, rows = (lines or len(names) for lines in thing.grid or (1, 1))
-                if thing.grid and not stands_in(made.blueprint, names, columns, rows):
-                    listed.append(f"{noun}: columns and rows are not {columns} and {rows}")
-        low, high = made.blueprint.assembly.bounds
-        if "toy" in self.text.lower().split() and (largest := float((high - low).max())) > _TOY:
-            listed.append(f"toy: it is {largest:.2g} m large")
-        own = self.own | {key for part in made.blueprint.parts for key in key_of(part.name.replace("_", " "))}
+        joints = [joint for joint in blueprint.joints if joint.mimic is None]
+        for what, value, units in self.moves:
+            some = any if value in ("pan", "tilt", "spin") or what == "towards" else all
+            holds = some(
+                moves_so(joint, value) if what == "motion" else goes_towards(blueprint, joint, value)
+                for joint in joints
+            )
+            if are_round(blueprint, [blueprint.parts[0].name]) if what == "round" else holds:
+                taken |= dict.fromkeys(units, "")
+        for noun, facts in self.things.items():
+            names = names_called(self.family, blueprint, noun)
+            if noun in made.missing or not names:
+                continue
+            listed += [f"{noun}: {why}" for why in self._inner_faults(facts, blueprint, names)]
+        there = {key for part in blueprint.parts for key in key_of(part.name.replace("_", " "))}
+        low, high = blueprint.assembly.bounds
+        large = float((high - low).max())
+        for k in range(self.stop + 1):
+            smallest, largest = map(float, (self._mean(k, "extent") or f"0 {large}").split())
+            if not smallest <= large <= largest:
+                listed.append(f"{self._text(k)}: it is {large:.2g} m large")
         return replace(
             made,
             differences=(*self.faults, *listed),
-            unread=tuple(words for words in unread if words and not set(key_of(words)) <= own),
+            unread=tuple(self._unread(taken, lost, there)),
             notes=tuple(self.notes),
             facts={"text": self.text, **made.facts},
         )
+
+    def _inner_faults(self, facts: Facts, made: Blueprint, names: list[str]) -> Iterator[str]:
+        """What is said of parts, is no field of a request, and is otherwise."""
+        columns, rows = (lines or len(names) for lines in facts.get("grid", (1, 1)))
+        if "grid" in facts and not stands_in(made, names, columns, rows):
+            yield f"columns and rows are not {columns} and {rows}"
+        if "round" in facts and not are_round(made, names):
+            yield "not round"
+        if "corner" in facts and not is_at(made, names, facts["corner"]):
+            yield f"not at the {facts['corner']}"
+        if "each_side" in facts and not on_both_sides(made, names):
+            yield "not as many on either side"
+        if (whose := facts.get("per")) and len(names) % max(len(names_called(self.family, made, whose)), 1):
+            yield f"there {'is' if len(names) == 1 else 'are'} {len(names)}, not as many for each {whose}"
+
+    def _unread(self, taken: Mapping[int, str], lost: set[str], there: set[str]) -> Iterator[str]:
+        """Words of content that nothing took, or a noun that is no part; those of a clause together."""
+        found: list[int] = []
+        head = lemma(self._text(self.stop - 1))
+        for k, role in enumerate(self.roles[: len(self.units) + 1]):
+            owner = taken.get(k)
+            words = key_of(self._text(k))
+            is_unknown = owner is None and not (set(words) <= there or kind_called([*words, head]) is self.family)
+            asks = role in _CONTENT or self._mean(k, "towards")
+            if owner == "!" or (asks and (owner in lost or is_unknown)):
+                found.append(k)
+            elif found and (role == "," or role in _CONTENT):
+                yield self._text(found[0], found[-1] + 1)
+                found = []
 
 
 def _match(pattern: str, text: str, k: int) -> Match:

@@ -114,6 +114,9 @@ class PartRequest(_Fields):
         description="How they move: at all, by turning, sliding, turning without end, turning about an upright or a "
         "level axis, sliding upwards, or not.",
     )
+    towards: Literal["left", "right", "front", "back", "top", "bottom", "out", "in"] | None = Field(
+        None, description="Where they go as they open."
+    )
     hinge: Literal["left", "right", "front", "back", "top", "bottom"] | None = Field(
         None, description="Side of the part on which its hinge is."
     )

@@ -29,7 +29,6 @@ from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.parameter import Parameter, details_of, phrases
 from kinematify.generate.procedural.solids import SEGMENTS
 from kinematify.generate.procedural.workshop import STYLES, Workshop
-from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -95,7 +94,6 @@ class Kind:
 
 
 _NOT_DRAWN = ("material", "color")
-_FAR = {JointType.REVOLUTE: "open_angle", JointType.PRISMATIC: "open_distance"}
 
 
 def built(kind: Kind, given: Mapping[str, Value], *, seed: int | None = None, name: str = "") -> Blueprint:
@@ -122,14 +120,10 @@ def built(kind: Kind, given: Mapping[str, Value], *, seed: int | None = None, na
         handles=(str(values["handle_material"]), str(values["handle_color"]) or None),
         walls=kind.walls,
     )
-    far = {moves: float(values[key]) for moves, key in _FAR.items() if values[key]}
-    # What opens at all is asked of the kind by opening it; how far, is set on the joints.
-    kind.make(workshop, {**values, "open": 1.0} if far else values, None if seed is None else rng)
+    kind.make(workshop, values, None if seed is None else rng)
     if not workshop.moves:
         counts = ", ".join(p.name for p in kind.parameters if isinstance(p.default, int))
         raise InputError(f"Nothing of this {kind.title} would move. Ask for one of {counts} at least.")
-    if far:
-        workshop.set_opening(far, title=kind.title)
     return workshop.finish(
         name or kind.name,
         {"seed": seed, **values},
@@ -253,7 +247,6 @@ def yes(chance: float, **facts: Any) -> Parameter:
     return choice(("yes", "no") if chance >= 0.5 else ("no", "yes"), yes=chance, **facts)
 
 
-_INSTEAD = "How far {} stand open instead of a share; {} stay closed."
 _COMMON = {
     "open": share(0.0, 1.0, default=0.0, usual=None, help="Share of the way that moving parts stand open."),
     "clearance": length(0, 0.003, default=1e-3, usual=(2e-4, 3e-3), help="Gap between what moves past each other."),
@@ -262,8 +255,6 @@ _COMMON = {
     "color": choice(("", *COLORS), help="Colour of what names no material of its own."),
     "handle_material": choice(sorted(MATERIALS, key="metal".__ne__), help="What handles are made of.", drawn=False),
     "handle_color": choice(("", *COLORS), help="Colour of handles, if painted.", drawn=False),
-    "open_angle": angle(0.0, math.pi, default=0.0, usual=None, help=_INSTEAD.format("hinges", "slides"), drawn=False),
-    "open_distance": length(0.0, 5.0, default=0.0, usual=None, help=_INSTEAD.format("slides", "hinges"), drawn=False),
 }
 COMMON = tuple(replace(item, name=name) for name, item in _COMMON.items())
 """Parameters of every kind."""

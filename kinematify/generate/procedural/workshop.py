@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from kinematify.assembly.part import Part
-from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
 from kinematify.generate.procedural.materials import MATERIALS, grain_coordinates, surface_of
 from kinematify.generate.procedural.solids import flat, union
@@ -90,7 +89,6 @@ def _bumps(points: FloatArray, waves: tuple[FloatArray, FloatArray, FloatArray])
 Look: TypeAlias = "tuple[str, str | RGB | None]"
 """Material, and colour where it is not the material's own."""
 _UNMOVED = np.eye(3, 4)
-_MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}
 
 
 class Workshop:
@@ -249,27 +247,6 @@ class Workshop:
             opened = rest * joint.upper if math.isfinite(joint.upper) else 0.0
             self._rest[joint.child] = opened or joint.value
 
-    def set_opening(self, far: Mapping[JointType, float], *, title: str) -> None:
-        """Make what stands open stand open by an angle or a distance, and all else closed; a door's handle rests.
-
-        Args:
-            far: Kind of joint -> how far [rad or m]; joints that go less far go to their end.
-            title: Of the family, for the message.
-
-        Raises:
-            InputError: No joint that opens goes so far.
-        """
-        opening = [joint for joint in self._joints if self._rest.get(joint.child)]
-        turned = {joint.child for joint in opening if joint.kind is JointType.REVOLUTE}
-        opening = [item for item in opening if not (item.kind is JointType.REVOLUTE and item.parent in turned)]
-        for kind, way in far.items():
-            reach = max((joint.upper for joint in opening if joint.kind is kind), default=0.0)
-            if way > reach + 1e-9:
-                asked, most = (_spoken(kind, value) for value in (way, reach))
-                reason = f"its {_MOVING[kind]} open by {most} at most" if reach else f"no {_MOVING[kind]} of it open"
-                raise InputError(f"A {title} is to be open by {asked}, but {reason}. Ask for less, or say 'half open'.")
-        self._rest = {joint.child: min(far.get(joint.kind, 0.0), joint.upper) for joint in opening}
-
     def finish(
         self, name: str, parameters: Mapping[str, Any], *, style: str, clearance: float, rng: np.random.Generator
     ) -> Blueprint:
@@ -315,7 +292,3 @@ class Workshop:
             density=MATERIALS[material].density,
             walls=self._walls,
         )
-
-
-def _spoken(kind: JointType, value: float) -> str:
-    return f"{math.degrees(value):.0f} degrees" if kind.turns else f"{value:g} m"

@@ -8,6 +8,7 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from kinematify.errors import InputError
+from kinematify.generate.delivery import opened
 from kinematify.generate.procedural.blueprint import Blueprint
 from kinematify.generate.procedural.workshop import STYLES
 from kinematify.generate.registry import FAMILIES, all_kinds, build
@@ -89,7 +90,8 @@ def test_a_style_changes_the_mesh_and_leaves_the_joints_free(style):
 
 
 def test_a_drawer_that_is_out_cannot_be_lifted():
-    made = build("table", {"layout": "2*drawer | drawer", "open_distance": 0.15})
+    made = build("table", {"layout": "2*drawer | drawer"})
+    made = opened(made, [joint.child for joint in made.joints], (0.15, "m"))
     manager, lifted = manager_of(made), np.eye(4)
     lifted[2, 3] = 0.005
     for joint in made.joints:
