@@ -502,7 +502,7 @@ def on_both_sides(made: Blueprint, names: Sequence[str]) -> bool:
     """Return True if as many of some parts are left of the middle as right of it."""
     shut = closed(made)
     middle = shut.assembly.bounds[:, 0].mean()
-    return sum(np.sign(part.bounds[:, 0].mean() - middle) for part in shut.parts if part.name in names) == 0.0
+    return not sum(np.sign(part.bounds[:, 0].mean() - middle) for part in shut.parts if part.name in names)
 
 
 def goes_towards(made: Blueprint, joint: BlueprintJoint, side: str) -> bool:

@@ -721,7 +721,7 @@ class Sentence:
             if grid := facts.get("grid"):
                 row = " | ".join([cell] * grid[0])
                 text = " / ".join([f"({row})" if grid[0] > 1 else cell] * grid[1])
-            level = int({"top": 0, "bottom": 20}.get(side, facts.get("row", 10)))
+            level = {"top": 0, "bottom": 20}.get(side, int(facts.get("row", 10)))
             for column in _OPPOSITE if both else [side if side in _OPPOSITE else ""] * bool(count):
                 columns.setdefault(column, []).append((level, text))
             if cell == "shelf":
