@@ -11,7 +11,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import button, case, knob
 from kinematify.generate.library.panels import carcass, drawer, grip, leaf, rack, seam
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -54,7 +54,7 @@ def slab_microwave(b: ObjectBuilder, width: float, depth: float, height: float, 
         middle = -panel / 2
         r = 0.38 * min(width - panel - 2 * wall, depth - wall)
         z = wall + seam(b, 0.1, 0.01)
-        b.part("plate", b.cylinder(r, (middle, 0.48 * depth, z), (middle, 0.48 * depth, z + 0.012)), material="glass")
+        b.part("plate", b.cylinder(r, (middle, 0.48 * depth, z), (middle, 0.48 * depth, z + 0.012)), look="glass")
         b.spin("plate", parent="body", axis=Z, pivot=(middle, 0.48 * depth, z))
     if panel:
         for k, z in enumerate(spread(b.count(0, 3), 0.1 * height, 0.9 * height)):
@@ -101,9 +101,9 @@ def slab_oven(
         material="steel",
     )
     front = b.pick(0, -thick)
-    b.part("body", box((-width / 2, front, h - top), (width / 2, depth, h)))
+    b.part("body", slab(width / 2, (front, depth), (h - top, h)))
     if foot:
-        b.part("body", box((-width / 2 + 0.02, 0.05, 0), (width / 2 - 0.02, depth, foot + 0.01)))
+        b.part("body", slab(width / 2 - 0.02, (0.05, depth), (0, foot + 0.01)))
     hinge = b.pick(-Z, -Z, -Z, X, -X)
     for k in range(number):
         low = foot + k * chamber
@@ -243,9 +243,9 @@ def slab_dishwasher(b: ObjectBuilder, depth: float, height: float, thick: float,
     foot = b.pick(0, 0.1)
     carcass(b, "body", lower=(-width / 2, 0, foot), upper=(width / 2, depth, height), wall=wall, material="steel")
     if foot:
-        b.part("body", box((-width / 2, 0.04, 0), (width / 2, depth, foot + 0.01)))
+        b.part("body", slab(width / 2, (0.04, depth), (0, foot + 0.01)))
     if strip:
-        b.part("body", box((-width / 2, -thick, height - strip), (width / 2, depth, height)))
+        b.part("body", slab(width / 2, (-thick, depth), (height - strip, height)))
         for k, x in enumerate(spread(b.count(1, 6), -0.4 * width, 0.4 * width)):
             button(
                 b,
@@ -298,7 +298,7 @@ def round_door_washer(b: ObjectBuilder, width: float, depth: float, height: floa
         b.cut("housing", b.cylinder(0.85 * r, (0, -0.1, z), (0, 0.8 * depth, z)))
         if b.maybe():
             g = b.gap(r) + 0.004
-            b.part("drum", b.cylinder(0.85 * r - g, (0, 0.06, z), (0, 0.8 * depth - g, z)), material="steel")
+            b.part("drum", b.cylinder(0.85 * r - g, (0, 0.06, z), (0, 0.8 * depth - g, z)), look="steel")
             b.cut("drum", b.cylinder(0.8 * r - g, (0, -0.1, z), (0, 0.78 * depth - g, z)))
             b.spin("drum", parent="housing", axis=Y, pivot=(0, 0.4 * depth, z))
     play = seam(b, r, thick)
@@ -375,7 +375,7 @@ def lever_toaster(b: ObjectBuilder, number: int, width: float, height: float, en
     case(b, "body", lower=(-width / 2, -t / 2, 0.01), upper=(width / 2, t / 2, height), material="steel")
     rows = spread(2 * number if b.maybe(0.7) else number, -t / 2, t / 2)
     for y in rows:
-        b.cut("body", box((-0.4 * width, y - 0.013, 0.2 * height), (0.4 * width, y + 0.013, height + 0.1)))
+        b.cut("body", slab(0.4 * width, (y - 0.013, y + 0.013), (0.2 * height, height + 0.1)))
     out = X if end else -Y
     face = width / 2 if end else t / 2
     along = Y if end else X
@@ -425,14 +425,14 @@ def lever_toaster(b: ObjectBuilder, number: int, width: float, height: float, en
     if b.maybe(0.4):
         y = -t / 2 if end else t / 2
         s = -1 if end else 1
-        b.bore("body", box((-0.35 * width, y + s * 0.02, 0.012), (0.35 * width, -0.85 * y, 0.022)))
+        b.bore("body", slab(0.35 * width, (y + s * 0.02, -0.85 * y), (0.012, 0.022)))
         g = b.gap(0.1)
         b.part(
             "crumb_tray",
-            box((-0.35 * width + g, y + s * 0.006, 0.0125 + g), (0.35 * width - g, -0.8 * y - s * g, 0.0215 - g)),
-            box((-0.1 * width, y + s * g, 0.0125 + g), (0.1 * width, y + s * 0.015, 0.0215 - g)),
+            slab(0.35 * width - g, (y + s * 0.006, -0.8 * y - s * g), (0.0125 + g, 0.0215 - g)),
+            slab(0.1 * width, (y + s * g, y + s * 0.015), (0.0125 + g, 0.0215 - g)),
         )
-        b.cut("body", box((-0.35 * width, y - s * 0.01, 0.012), (0.35 * width, y + s * 0.025, 0.022)))
+        b.cut("body", slab(0.35 * width, (y - s * 0.01, y + s * 0.025), (0.012, 0.022)))
         b.slide("crumb_tray", parent="body", axis=-Y if end else Y, upper=0.7 * t)
 
 
@@ -442,9 +442,9 @@ def plain_kettle(b: ObjectBuilder, radius: float, height: float, high: float) ->
     top = b.draw(0.6, 1) * radius
     b.part(
         "jug",
-        b.cone(radius, top, (0, 0, 0.02), (0, 0, height)),
+        b.cone(radius, top, 0.02, height),
         b.cone(0.4 * radius, 0.15 * radius, (0, -0.5 * radius, 0.5 * height), (0, -1.5 * radius, 0.95 * height)),
-        material="steel",
+        look="steel",
     )
     b.part(
         "jug",
@@ -453,15 +453,13 @@ def plain_kettle(b: ObjectBuilder, radius: float, height: float, high: float) ->
         beam(0.025, 0.02, (0, 1.62 * radius, 0.26 * height), (0, 0.9 * radius, 0.22 * height)),
     )
     if b.style.hollow:
-        b.cut("jug", b.cone(0.9 * radius, 0.88 * top, (0, 0, 0.03), (0, 0, height + 0.001)))
+        b.cut("jug", b.cone(0.9 * radius, 0.88 * top, 0.03, height + 0.001))
     play = seam(b, radius, 0.01)
     z = height + play
     b.part(
         "lid",
-        b.pick(
-            b.cone(top, 0.6 * top, (0, 0, z), (0, 0, z + high)), b.cylinder(0.95 * top, (0, 0, z), (0, 0, z + high))
-        ),
-        b.pick(ball(0.012, (0, 0, z + high + 0.008)), b.cylinder(0.014, (0, 0, z), (0, 0, z + high + 0.02))),
+        b.pick(b.cone(top, 0.6 * top, z, z + high), b.cylinder(0.95 * top, z, z + high)),
+        b.pick(ball(0.012, (0, 0, z + high + 0.008)), b.cylinder(0.014, z, z + high + 0.02)),
     )
     if b.maybe():
         b.slide("lid", parent="jug", axis=Z, upper=b.draw(0.03, 0.15))
@@ -469,7 +467,7 @@ def plain_kettle(b: ObjectBuilder, radius: float, height: float, high: float) ->
         b.hinge("lid", parent="jug", axis=-X, pivot=(0, b.pick(0.95, 1) * top, z), upper=b.draw(1, 1.7))
     if b.maybe(0.6):
         g = b.gap(radius)
-        b.part("base", b.cylinder(1.05 * radius, (0, 0, 0), (0, 0, 0.02 - g)))
+        b.part("base", b.cylinder(1.05 * radius, 0, 0.02 - g))
         if b.maybe():
             b.spin("jug", parent="base", axis=Z, pivot=(0, 0, 0.02))
         else:
@@ -491,9 +489,9 @@ def plain_coffee_machine(b: ObjectBuilder, width: float, depth: float, height: f
     back = 0.45 * depth
     b.part(
         "body",
-        box((-width / 2, back, 0), (width / 2, depth, height)),
-        box((-width / 2, 0, height - head), (width / 2, depth, height)),
-        box((-width / 2, 0, 0), (width / 2, depth, foot)),
+        slab(width / 2, (back, depth), (0, height)),
+        slab(width / 2, (0, depth), (height - head, height)),
+        slab(width / 2, (0, depth), (0, foot)),
     )
     if kind == "lid":
         thick = b.draw(0.012, 0.03)
@@ -519,12 +517,12 @@ def plain_coffee_machine(b: ObjectBuilder, width: float, depth: float, height: f
             beam(
                 0.015, 0.012, at + 0.008 * side, at + 0.008 * side - b.draw(0.3, 0.6) * depth * Y + 0.3 * head * Z, side
             ),
-            material="metal",
+            look="metal",
         )
         b.hinge("lever", parent="body", axis=X, pivot=at, upper=b.draw(0.6, 1.4), ajar=False)
     if b.maybe(0.7):
         play = seam(b, width, 0.01)
-        b.part("tray", box((-0.45 * width, 0.01, foot + play), (0.45 * width, back - 0.01, foot + play + 0.015)))
+        b.part("tray", slab(0.45 * width, (0.01, back - 0.01), (foot + play, foot + play + 0.015)))
         b.slide("tray", parent="body", axis=-Y, upper=b.draw(0.6, 0.95) * back)
     radius = min(0.3 * width, 0.4 * back)
     if b.maybe(0.6):
@@ -539,7 +537,7 @@ def plain_coffee_machine(b: ObjectBuilder, width: float, depth: float, height: f
                 (0, 0.5 * back - 0.9 * radius, 0.8 * z1 + 0.2 * z0),
                 (0, 0.5 * back - 1.6 * radius, 0.75 * z1 + 0.25 * z0),
             ),
-            material="glass",
+            look="glass",
         )
         b.slide("jug", parent="body", axis=-Y, upper=b.draw(0.1, 0.25), ajar=False)
     for k, x in enumerate(spread(b.count(0, 3), -0.45 * width, 0.45 * width)):
@@ -605,9 +603,9 @@ def slab_safe(b: ObjectBuilder, width: float, depth: float, height: float, wall:
         material="steel",
     )
     if inset and b.style.hollow:
-        b.cut("body", box((-width / 2 + wall, -0.001, wall), (width / 2 - wall, thick, height - wall)))
+        b.cut("body", slab(width / 2 - wall, (-0.001, thick), (wall, height - wall)))
     face = y - 0.35 * thick
-    b.part("door", box((-0.12 * width, face, 0.35 * height), (0.12 * width, y + 0.2 * thick, 0.65 * height)))
+    b.part("door", slab(0.12 * width, (face, y + 0.2 * thick), (0.35 * height, 0.65 * height)))
     if b.maybe(0.7):
         knob(
             b,
@@ -625,7 +623,7 @@ def slab_safe(b: ObjectBuilder, width: float, depth: float, height: float, wall:
         n = b.pick(1, 2, 3, 4)
         deep = b.draw(0.02, 0.04)
         foot = -seam(b, r, 0.01)
-        b.part("handle", b.cylinder(0.3 * r, at + foot * Y, at - deep * Y), material="metal")
+        b.part("handle", b.cylinder(0.3 * r, at + foot * Y, at - deep * Y), look="metal")
         for a in np.arange(n) * 2 * pi / n + b.pick(0, 0.5):
             tip = at - 0.8 * deep * Y + r * (cos(a) * X + sin(a) * Z)
             b.part("handle", b.cylinder(0.12 * r, at - 0.8 * deep * Y, tip))

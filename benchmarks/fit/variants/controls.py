@@ -12,7 +12,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import seam
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -50,9 +50,9 @@ def rocker_plate(
     if not upright:
         wide = a * d.draw(1.2, 1.8)
         tall = b * number * d.draw(1.05, 1.3)
-    d.part("plate", box((-wide / 2, 0, -tall / 2), (wide / 2, thick, tall / 2)))
+    d.part("plate", slab(wide / 2, (0, thick), tall / 2))
     if d.maybe(0.4):
-        d.part("plate", box((-0.45 * wide, thick / 2, -0.45 * tall), (0.45 * wide, d.draw(0.03, 0.06), 0.45 * tall)))
+        d.part("plate", slab(0.45 * wide, (thick / 2, d.draw(0.03, 0.06)), 0.45 * tall))
     deep = d.draw(0.3, 0.9) * thick if d.style.has_bore else d.pick(0, 0.3 * thick)
     play1 = d.gap(a) + 0.0003
     for k in range(number):
@@ -93,7 +93,7 @@ def toggle_plate(
     """Sticks that lean up or down out of a plate, on a barrel, on a ball, or just in the plate."""
     wide = number * b.draw(1.2, 2.5) * length
     tall = b.draw(2.2, 4) * length
-    b.part("plate", box((-wide / 2, 0, -tall / 2), (wide / 2, thick, tall / 2)))
+    b.part("plate", slab(wide / 2, (0, thick), tall / 2))
     r = b.draw(0.08, 0.2) * length
     for k, x in enumerate(spread(number, -wide / 2, wide / 2)):
         turn = b.pick(-lean, lean)
@@ -118,7 +118,7 @@ def toggle_plate(
                 "cone": b.cone(0.7 * r, 1.3 * r, at, at + length * out),
                 "bar": beam(3 * r if flat else 1.5 * r, 1.5 * r, at, at + length * out),
             }[form],
-            material="metal",
+            look="metal",
         )
         if turn < 0:
             b.hinge(name, parent="plate", axis=-X, pivot=at, upper=2 * lean, ajar=False)
@@ -140,7 +140,7 @@ def button_plate(b: ObjectBuilder, columns: int, rows: int, a: float, is_round: 
     wide = columns * a * b.draw(1.3, 2.2)
     tall = rows * a * b.draw(1.3, 2.2)
     thick = b.draw(0.3, 1) * a
-    b.part("panel", box((-wide / 2, 0, -tall / 2), (wide / 2, thick, tall / 2)), material="metal")
+    b.part("panel", slab(wide / 2, (0, thick), tall / 2), look="metal")
     high = b.draw(0.1, 0.5) * a
     size = (a, a * b.draw(0.5, 1))
     for i, z in enumerate(spread(rows, -tall / 2, tall / 2)):
@@ -173,7 +173,7 @@ def key_pad(b: ObjectBuilder, columns: int, rows: int, a: float, thick: float, i
     """A remote control, a telephone, a calculator: keys on a slab that lies flat."""
     wide = columns * a * b.draw(1.1, 1.6)
     deep = rows * a * b.draw(1.2, 3)
-    b.part("slab", box((-wide / 2, -deep / 2, 0), (wide / 2, deep / 2 + b.pick(0, 0.05), thick)))
+    b.part("slab", slab(wide / 2, (-deep / 2, deep / 2 + b.pick(0, 0.05)), (0, thick)))
     for i, y in enumerate(spread(rows, -deep / 2, deep / 2)):
         for k, x in enumerate(spread(columns, -wide / 2, wide / 2)):
             button(
@@ -200,12 +200,7 @@ def key_pad(b: ObjectBuilder, columns: int, rows: int, a: float, thick: float, i
 def plain_faucet(b: ObjectBuilder, radius: float, reach: float, swings: bool, form: str, kind: str) -> None:
     """A column, a spout that swings or stands fast, and one lever, two levers or two knobs."""
     h = b.draw(5, 10) * radius
-    b.part(
-        "base",
-        b.cylinder(1.6 * radius, (0, 0, 0), (0, 0, 0.012)),
-        b.cylinder(radius, (0, 0, 0), (0, 0, 0.6 * h)),
-        material="metal",
-    )
+    b.part("base", b.cylinder(1.6 * radius, 0, 0.012), b.cylinder(radius, 0, 0.6 * h), look="metal")
     play = seam(b, radius, 0.02)
     z = 0.6 * h + play
     spout = "spout" if swings else "base"
@@ -223,8 +218,8 @@ def plain_faucet(b: ObjectBuilder, radius: float, reach: float, swings: bool, fo
     else:
         b.part(
             spout,
-            box((-radius, -radius, z), (radius, radius, h)),
-            box((-0.8 * radius, -reach, h - 0.8 * radius), (0.8 * radius, 0, h)),
+            slab(radius, radius, (z, h)),
+            slab(0.8 * radius, (-reach, 0), (h - 0.8 * radius, h)),
         )
     if not swings:
         b.part("base", b.cylinder(0.9 * radius, (0, 0, 0), top))
@@ -248,7 +243,7 @@ def plain_faucet(b: ObjectBuilder, radius: float, reach: float, swings: bool, fo
                 name,
                 b.cylinder(0.8 * radius, foot + (play1 if b.style.has_bore else 0) * out, foot + radius * out),
                 b.cylinder(0.25 * radius, foot + 0.6 * radius * out, foot + 0.6 * radius * out + length * along),
-                material="metal",
+                look="metal",
             )
             b.hinge(name, parent="base", axis=axis, pivot=foot, upper=b.draw(0.5, 1.6), ajar=False)
         else:
@@ -256,7 +251,7 @@ def plain_faucet(b: ObjectBuilder, radius: float, reach: float, swings: bool, fo
             b.part(
                 "base",
                 b.cylinder(radius, (x, 0, 0), (x, 0, 0.3 * h)),
-                box((x, -0.6 * radius, 0), (0, 0.6 * radius, 0.01)),
+                slab((x, 0), 0.6 * radius, (0, 0.01)),
             )
             if kind == "two knobs":
                 knob(
@@ -281,7 +276,7 @@ def plain_faucet(b: ObjectBuilder, radius: float, reach: float, swings: bool, fo
                         (x, 0, 0.3 * h + 0.7 * radius),
                         vector(x, 0, 0.3 * h + 0.7 * radius) + 4 * radius * along,
                     ),
-                    material="metal",
+                    look="metal",
                 )
                 b.hinge(name, parent="base", axis=s * Z, pivot=(x, 0, 0.3 * h), upper=b.draw(0.8, 1.8), ajar=False)
 
@@ -298,7 +293,7 @@ def dial_plate(b: ObjectBuilder, number: int, radius: float) -> None:
         prism(
             [(0, -tall / 2), (tilt + thick, -tall / 2), (tilt + thick, tall / 2), (0, tall / 2)], (0, 0, 0), wide, "x"
         ),
-        material="metal",
+        look="metal",
     )
     high = b.draw(0.3, 1.2) * radius
     ended = b.pick(None, 2, 4.7)

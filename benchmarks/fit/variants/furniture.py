@@ -10,7 +10,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import case, legs, lever
 from kinematify.generate.library.panels import carcass, drawer, leaf, seam
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -29,7 +29,7 @@ def wardrobe(b: ObjectBuilder, width: float, depth: float, height: float, number
     foot = b.pick(0, 0.35)
     case(b, "carcass", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), opening=-Y, wall=0.02)
     if foot:
-        b.part("carcass", box((-width / 2, 0, foot), (width / 2, depth, foot + 0.02)))
+        b.part("carcass", slab(width / 2, (0, depth), (foot, foot + 0.02)))
         for k, x in enumerate(spread(2, -width / 2, width / 2)):
             drawer(
                 b,
@@ -91,8 +91,8 @@ def nightstand(b: ObjectBuilder, width: float, height: float, leg: float) -> Non
     case(b, "stand", lower=(-width / 2, 0, leg), upper=(width / 2, 0.8 * width, height), opening=-Y, wall=0.018)
     legs(b, "stand", lower=(-width / 2, 0, 0), upper=(width / 2, 0.8 * width, leg + 0.005), thick=0.04)
     level = leg + b.draw(0.5, 0.65) * (height - leg)
-    b.part("stand", box((-width / 2, 0, level - 0.015), (width / 2, 0.8 * width, level)))
-    b.part("stand", box((-width / 2 + 0.005, 0.02, level), (width / 2 - 0.005, 0.8 * width, height - 0.005)))
+    b.part("stand", slab(width / 2, (0, 0.8 * width), (level - 0.015, level)))
+    b.part("stand", slab(width / 2 - 0.005, (0.02, 0.8 * width), (level, height - 0.005)))
     drawer(
         b,
         "drawer",
@@ -123,7 +123,7 @@ def nightstand(b: ObjectBuilder, width: float, height: float, leg: float) -> Non
 def gateleg_table(b: ObjectBuilder, width: float, depth: float, m: float) -> None:
     """Leaves that hang from a narrow middle, or lie level with it."""
     h = 0.74
-    b.part("middle", box((-m / 2, -depth / 2, h - 0.025), (m / 2, depth / 2, h)), material="wood")
+    b.part("middle", slab(m / 2, depth / 2, (h - 0.025, h)), look="wood")
     legs(b, "middle", lower=(-m / 2, -depth / 2 + 0.05, 0), upper=(m / 2, depth / 2 - 0.05, h - 0.02), thick=0.05)
     for k, s in enumerate((-1, 1)):
         leaf(
@@ -148,16 +148,16 @@ def gateleg_table(b: ObjectBuilder, width: float, depth: float, m: float) -> Non
 )
 def parametric_recliner(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A back that leans and a foot rest that comes up."""
-    b.part("seat", box((-width / 2, 0, 0.05), (width / 2, depth, height)), material="wood")
+    b.part("seat", slab(width / 2, (0, depth), (0.05, height)), look="wood")
     for s in (-1, 1):
         b.part("seat", box((s * width / 2, -0.02, 0), (s * (width / 2 + 0.12), depth + 0.1, height + 0.2)))
     g = b.gap(0.2)
     b.part(
         "back",
-        box((-width / 2 + g, depth + g, height - 0.15), (width / 2 - g, depth + 0.15, height + b.draw(0.5, 0.75))),
+        slab(width / 2 - g, (depth + g, depth + 0.15), (height - 0.15, height + b.draw(0.5, 0.75))),
     )
     b.hinge("back", parent="seat", axis=-X, pivot=(0, depth + b.style.gap, height - 0.15), upper=0.6)
-    b.part("rest", box((-width / 2 + g, -0.08, 0.08), (width / 2 - g, -g, height - 0.02)))
+    b.part("rest", slab(width / 2 - g, (-0.08, -g), (0.08, height - 0.02)))
     b.hinge("rest", parent="seat", axis=-X, pivot=(0, -0.08, height - 0.02), upper=1.3)
     if b.maybe():
         lever(b, "handle", parent="seat", at=(width / 2 + 0.12, 0.3 * depth, height), out=X, along=-Y, length=0.15)
@@ -175,11 +175,7 @@ def folding_bed(b: ObjectBuilder, width: float, height: float) -> None:
         b, "case", lower=(-width / 2 - 0.03, 0, 0), upper=(width / 2 + 0.03, 0.4, height + 0.05), opening=-Y, wall=0.025
     )
     g = b.gap(0.2)
-    b.part(
-        "bed",
-        box((-width / 2 + g, -0.02, 0.35), (width / 2 - g, 0 if not b.style.hollow else 0.25, height)),
-        material="wood",
-    )
+    b.part("bed", slab(width / 2 - g, (-0.02, 0 if not b.style.hollow else 0.25), (0.35, height)), look="wood")
     b.hinge(
         "bed", parent="case", axis=X, pivot=(0, 0 if b.style.line else 0.1, 0.36 if b.style.line else 0.4), upper=1.57
     )
@@ -196,7 +192,7 @@ def rocking_cradle(b: ObjectBuilder, width: float, radius: float, height: float)
             "stand",
             beam(0.04, 0.04, (x, -0.3, 0), (x, 0, height), X),
             beam(0.04, 0.04, (x, 0.3, 0), (x, 0, height), X),
-            material="wood",
+            look="wood",
         )
     b.part(
         "stand",
@@ -206,12 +202,8 @@ def rocking_cradle(b: ObjectBuilder, width: float, radius: float, height: float)
     b.part("stand", beam(0.04, 0.04, (width / 2 + 0.05, -0.26, 0.15), (width / 2 + 0.05, 0.26, 0.15)))
     g = b.gap(0.05)
     top = height - 0.05
-    b.part(
-        "cradle",
-        box((-width / 2 + 0.01 + g, -radius, top - 0.35), (width / 2 - 0.01 - g, radius, top - 0.05)),
-        material="wood",
-    )
-    b.cut("cradle", box((-width / 2 + 0.03, -radius + 0.02, top - 0.33), (width / 2 - 0.03, radius - 0.02, top)))
+    b.part("cradle", slab(width / 2 - 0.01 - g, radius, (top - 0.35, top - 0.05)), look="wood")
+    b.cut("cradle", slab(width / 2 - 0.03, radius - 0.02, (top - 0.33, top)))
     for s in (-1, 1):
         x = s * (width / 2 - 0.02 - g)
         b.part("cradle", beam(0.02, 0.06, (x, 0, top - 0.2), (x, 0, top + 0.02), Y))
@@ -231,7 +223,7 @@ def rocking_cradle(b: ObjectBuilder, width: float, radius: float, height: float)
 def mirror_on_stand(b: ObjectBuilder, width: float, height: float) -> None:
     """A mirror that tilts between two posts or in a fork."""
     g = b.gap(0.04) + 0.001
-    b.part("stand", box((-width / 2 - 0.05, -0.15, 0), (width / 2 + 0.05, 0.15, 0.03)), material="wood")
+    b.part("stand", slab(width / 2 + 0.05, 0.15, (0, 0.03)), look="wood")
     for s in (-1, 1):
         b.part(
             "stand",
@@ -241,9 +233,9 @@ def mirror_on_stand(b: ObjectBuilder, width: float, height: float) -> None:
     glass = (
         b.cylinder(width / 2, (0, -0.01, z), (0, 0.01, z))
         if height < 1.1 * width
-        else box((-width / 2, -0.01, 0.08), (width / 2, 0.01, 0.08 + height))
+        else slab(width / 2, 0.01, (0.08, 0.08 + height))
     )
-    b.part("mirror", glass, material="glass")
+    b.part("mirror", glass, look="glass")
     if b.style.barrels or b.style.has_bore:
         own = b.pick("mirror", "stand")
         b.bore(
@@ -272,7 +264,7 @@ def drawer_table(
 ) -> None:
     """A table or desk whose apron or pedestal holds drawers: fronts alone, trays or blocks."""
     wall = 0.018
-    b.part("table", box((-width / 2, -0.02, height - top), (width / 2, depth, height)), material="wood")
+    b.part("table", slab(width / 2, (-0.02, depth), (height - top, height)), look="wood")
     legs(
         b,
         "table",
@@ -324,9 +316,9 @@ def desk_with_pedestal(b: ObjectBuilder, width: float, depth: float, height: flo
     """A desk with three drawers on one side and a keyboard tray."""
     b.part(
         "desk",
-        box((-width / 2, 0, height - 0.03), (width / 2, depth, height)),
+        slab(width / 2, (0, depth), (height - 0.03, height)),
         box((width / 2 - 0.03, 0, 0), (width / 2, depth, height)),
-        material="wood",
+        look="wood",
     )
     b.part("desk", box((-width / 2, 0.02, 0), (-width / 2 + p, depth, height - 0.02)))
     for k, z in enumerate(spread(3, 0.05, height - 0.04)):
@@ -359,7 +351,7 @@ def glider_chair(b: ObjectBuilder, size: float) -> None:
         "stand",
         box(p(-0.4, -0.4, 0), p(0.4, 0.4, 0.04)),
         [box(p(s * 0.36 - 0.02, -0.03, 0.03), p(s * 0.36 + 0.02, 0.03, 0.62)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     b.bore("stand", b.cylinder(0.0115 * size, p(-1, 0, 0.58), p(1, 0, 0.58)))
     b.part(
@@ -370,7 +362,6 @@ def glider_chair(b: ObjectBuilder, size: float) -> None:
         [box(p(s * 0.28, -0.22, 0.38), p(s * 0.25, -0.17, 0.56)) for s in (-1, 1)],
         [box(p(s * 0.28, 0.17, 0.38), p(s * 0.25, 0.22, 0.56)) for s in (-1, 1)],
         [b.cylinder(0.01 * size, p(s * 0.29, 0, 0.58), p(s * 0.39, 0, 0.58)) for s in (-1, 1)],
-        material="wood",
-        color="brown",
+        look="brown wood",
     )
     b.hinge("seat", parent="stand", axis=X, pivot=p(0, 0, 0.58), upper=0.3, lower=-0.3)

@@ -8,7 +8,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, kind, length, yes
 from kinematify.generate.library.mechanisms import bail, button, case, crank, knob, lever, rotor
 from kinematify.generate.library.panels import drawer, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, slab
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -22,25 +22,18 @@ def pedal_bin(b: ObjectBuilder, radius: float, height: float) -> None:
     is_round = b.pick(True, False)
 
     def body(low: float, high: float) -> Manifold:
-        return (
-            b.cylinder(radius, (0, 0, low), (0, 0, high))
-            if is_round
-            else box((-radius, -radius, low), (radius, radius, high))
-        )
+        return b.cylinder(radius, low, high) if is_round else slab(radius, radius, (low, high))
 
-    b.part("bin", body(0, height), material="steel")
+    b.part("bin", body(0, height), look="steel")
     if b.style.hollow:
-        b.cut("bin", b.cylinder(0.9 * radius, (0, 0, 0.02), (0, 0, height + 1)))
+        b.cut("bin", b.cylinder(0.9 * radius, 0.02, height + 1))
     g = b.gap(radius)
     b.part("lid", body(height + g, height + g + 0.04))
     b.hinge("lid", parent="bin", axis=-X, pivot=(0, radius, height + g), upper=b.draw(1.2, 1.6))
     low = 0.02 + b.gap(0.05)
     b.part(
         "pedal",
-        box(
-            (-0.03, -radius - 0.07, low),
-            (0.03, -radius - g - 0.001 if b.style.has_bore else -0.6 * radius, low + 0.012),
-        ),
+        slab(0.03, (-radius - 0.07, -radius - g - 0.001 if b.style.has_bore else -0.6 * radius), (low, low + 0.012)),
     )
     b.hinge(
         "pedal",
@@ -57,16 +50,16 @@ def parametric_pepper_mill(b: ObjectBuilder, radius: float, height: float) -> No
     """A head that turns on a body."""
     b.part(
         "body",
-        b.cylinder(radius, (0, 0, 0), (0, 0, 0.3 * height)),
-        b.cone(radius, 0.6 * radius, (0, 0, 0.3 * height), (0, 0, 0.7 * height)),
-        material="wood",
+        b.cylinder(radius, 0, 0.3 * height),
+        b.cone(radius, 0.6 * radius, 0.3 * height, 0.7 * height),
+        look="wood",
     )
     g = b.gap(radius)
     b.part(
         "head",
-        b.cylinder(0.6 * radius, (0, 0, 0.7 * height + g), (0, 0, 0.75 * height)),
+        b.cylinder(0.6 * radius, 0.7 * height + g, 0.75 * height),
         ball(0.95 * radius, (0, 0, 0.75 * height + 0.9 * radius + g)),
-        material="wood",
+        look="wood",
     )
     if b.maybe(0.3):
         b.part(
@@ -89,21 +82,16 @@ def parametric_pepper_mill(b: ObjectBuilder, radius: float, height: float) -> No
 )
 def tap(b: ObjectBuilder, radius: float, height: float, reach: float, swings: bool) -> None:
     """A basin mixer: a lever or two handles, a spout that swings."""
-    b.part(
-        "base",
-        b.cylinder(1.3 * radius, (0, 0, 0), (0, 0, 0.02)),
-        b.cylinder(radius, (0, 0, 0), (0, 0, 0.6 * height)),
-        material="steel",
-    )
+    b.part("base", b.cylinder(1.3 * radius, 0, 0.02), b.cylinder(radius, 0, 0.6 * height), look="steel")
     g = b.gap(radius)
     spout = (
-        b.cylinder(radius, (0, 0, 0.6 * height + g), (0, 0, height)),
+        b.cylinder(radius, 0.6 * height + g, height),
         b.rod(0.6 * radius, (0, 0, 0.9 * height), (0, -reach, 0.9 * height)),
         b.cylinder(0.6 * radius, (0, -reach, 0.9 * height), (0, -reach, 0.7 * height)),
     )
-    b.part(f"{'spout' if swings else 'base'}", spout, material="steel")
+    b.part(f"{'spout' if swings else 'base'}", spout, look="steel")
     if not swings:
-        b.part("base", b.cylinder(0.98 * radius, (0, 0, 0.5 * height), (0, 0, 0.7 * height)))
+        b.part("base", b.cylinder(0.98 * radius, 0.5 * height, 0.7 * height))
     else:
         b.hinge("spout", parent="base", axis=Z, pivot=(0, 0, 0.6 * height), upper=1.4, lower=-1.4, ajar=False)
     if b.maybe():
@@ -123,7 +111,7 @@ def tap(b: ObjectBuilder, radius: float, height: float, reach: float, swings: bo
         on = "spout" if swings else "base"
         b.part(
             "lever",
-            b.cylinder(0.8 * radius, (0, 0, height + g), (0, 0, height + 0.02)),
+            b.cylinder(0.8 * radius, height + g, height + 0.02),
             beam(0.014, 0.008, (0, 0, height + 0.016), (0, -0.1, height + 0.03)),
         )
         b.hinge("lever", parent=on, axis=Z, pivot=(0, 0, height), upper=1.0, lower=-1.0, ajar=False)
@@ -140,21 +128,21 @@ def cistern(b: ObjectBuilder, width: float, height: float) -> None:
     """A toilet: seat, lid and a flush button, lever or chain pull."""
     b.part(
         "bowl",
-        b.cone(0.3 * width, 0.48 * width, (0, 0, 0), (0, 0, height)),
-        box((-width / 2, 0.45 * width, 0), (width / 2, 0.95 * width, height)),
-        box((-width / 2, 0.6 * width, height), (width / 2, 0.95 * width, height + 0.38)),
-        material="ceramic",
+        b.cone(0.3 * width, 0.48 * width, 0, height),
+        slab(width / 2, (0.45 * width, 0.95 * width), (0, height)),
+        slab(width / 2, (0.6 * width, 0.95 * width), (height, height + 0.38)),
+        look="ceramic",
     )
     g = b.gap(0.03) + 0.001
     b.part("seat", b.cylinder(0.5 * width, (0, -0.06 * width, height + g), (0, -0.06 * width, height + g + 0.02)))
     b.cut("seat", b.cylinder(0.33 * width, (0, -0.06 * width, height), (0, -0.06 * width, height + 0.1)))
     y = 0.46 * width
-    b.part("seat", box((-0.3 * width, 0.4 * width, height + g), (0.3 * width, y, height + g + 0.02)))
+    b.part("seat", slab(0.3 * width, (0.4 * width, y), (height + g, height + g + 0.02)))
     b.hinge("seat", parent="bowl", axis=-X, pivot=(0, y, height + g), upper=1.55)
     b.part(
         "lid",
         b.cylinder(0.5 * width, (0, -0.06 * width, height + 2 * g + 0.02), (0, -0.06 * width, height + 2 * g + 0.035)),
-        box((-0.3 * width, 0.4 * width, height + 2 * g + 0.02), (0.3 * width, y, height + 2 * g + 0.035)),
+        slab(0.3 * width, (0.4 * width, y), (height + 2 * g + 0.02, height + 2 * g + 0.035)),
     )
     b.hinge("lid", parent="bowl", axis=-X, pivot=(0, y, height + g), upper=1.55, ajar=False)
     top = (0, 0.78 * width, height + 0.38)
@@ -185,7 +173,7 @@ def clothes_airer(b: ObjectBuilder, width: float, depth: float, height: float) -
             b.cylinder(r, (s * width / 2, -depth / 2, height), (s * width / 2, depth / 2, height)),
             b.cylinder(r, (s * width / 2, -depth / 2, height), (-s * width / 3, -depth / 2, 0)),
             b.cylinder(r, (s * width / 2, depth / 2, height), (-s * width / 3, depth / 2, 0)),
-            material="steel",
+            look="steel",
         )
         b.part("frame", b.cylinder(r, (-width / 2, s * depth / 2, height), (width / 2, s * depth / 2, height)))
     b.part(
@@ -209,13 +197,13 @@ def parametric_stand_mixer(b: ObjectBuilder, size: float) -> None:
     """A head that tilts, a beater that turns, a speed lever."""
     b.part(
         "base",
-        box((-0.09 * size, -0.2 * size, 0), (0.09 * size, 0.12 * size, 0.03)),
-        box((-0.05 * size, 0.02 * size, 0), (0.05 * size, 0.1 * size, 0.22 * size)),
-        material="metal",
+        slab(0.09 * size, (-0.2 * size, 0.12 * size), (0, 0.03)),
+        slab(0.05 * size, (0.02 * size, 0.1 * size), (0, 0.22 * size)),
+        look="metal",
     )
     g = b.gap(0.05)
     z = 0.22 * size + g
-    b.part("head", box((-0.05 * size, -0.2 * size, z), (0.05 * size, 0.1 * size, z + 0.1 * size)))
+    b.part("head", slab(0.05 * size, (-0.2 * size, 0.1 * size), (z, z + 0.1 * size)))
     b.hinge("head", parent="base", axis=-X, pivot=(0, 0.1 * size, z), upper=0.8)
     b.part(
         "beater",
@@ -234,30 +222,22 @@ def parametric_stand_mixer(b: ObjectBuilder, size: float) -> None:
 @kind("parametric waffle iron", like="waffle_iron", width=length(0.2, 0.35), depth=length(0.2, 0.3), shape=yes(0.5))
 def parametric_waffle_iron(b: ObjectBuilder, width: float, depth: float, shape: bool) -> None:
     """Two shells on a hinge with handles, sandwich maker or grill."""
-    low = (
-        b.cylinder(width / 2, (0, 0, 0.02), (0, 0, 0.07))
-        if shape
-        else box((-width / 2, -depth / 2, 0.02), (width / 2, depth / 2, 0.07))
-    )
+    low = b.cylinder(width / 2, 0.02, 0.07) if shape else slab(width / 2, depth / 2, (0.02, 0.07))
     r = width / 2 if shape else depth / 2
     b.part(
         "lower",
         low,
-        box((-0.04, -r - 0.1, 0.04), (0.04, -0.9 * r, 0.06)),
-        box((-0.05, 0.8 * r, 0.03), (0.05, r + 0.02, 0.07)),
-        material="metal",
+        slab(0.04, (-r - 0.1, -0.9 * r), (0.04, 0.06)),
+        slab(0.05, (0.8 * r, r + 0.02), (0.03, 0.07)),
+        look="metal",
     )
     g = b.gap(0.05)
-    up = (
-        b.cylinder(width / 2, (0, 0, 0.07 + g), (0, 0, 0.12))
-        if shape
-        else box((-width / 2, -depth / 2, 0.07 + g), (width / 2, depth / 2, 0.12))
-    )
+    up = b.cylinder(width / 2, 0.07 + g, 0.12) if shape else slab(width / 2, depth / 2, (0.07 + g, 0.12))
     b.part(
         "upper",
         up,
-        box((-0.04, -r - 0.1, 0.08), (0.04, -0.9 * r, 0.1)),
-        box((-0.05, 0.8 * r, 0.07 + g), (0.05, r + 0.02, 0.1)),
+        slab(0.04, (-r - 0.1, -0.9 * r), (0.08, 0.1)),
+        slab(0.05, (0.8 * r, r + 0.02), (0.07 + g, 0.1)),
     )
     b.hinge("upper", parent="lower", axis=-X, pivot=(0, r + 0.02, 0.07 + g / 2), upper=b.draw(1.2, 1.7))
 
@@ -267,7 +247,7 @@ def range_cooker(b: ObjectBuilder, width: float, height: float) -> None:
     """An oven with a door, knobs in a row, a drawer for pans."""
     t = 0.6
     case(b, "range", lower=(-width / 2, 0, 0), upper=(width / 2, t, height), material="steel")
-    b.bore("range", box((-width / 2 + 0.06, -0.1, 0.25), (width / 2 - 0.06, t - 0.1, height - 0.2)))
+    b.bore("range", slab(width / 2 - 0.06, (-0.1, t - 0.1), (0.25, height - 0.2)))
     leaf(
         b,
         "door",
@@ -311,11 +291,11 @@ def range_cooker(b: ObjectBuilder, width: float, height: float) -> None:
 def top_loader(b: ObjectBuilder, width: float, height: float) -> None:
     """A washing machine with a lid above, a drum and a dial."""
     case(b, "housing", lower=(-width / 2, -0.3, 0), upper=(width / 2, 0.3, height), material="steel")
-    b.part("housing", box((-width / 2, 0.2, height - 0.01), (width / 2, 0.3, height + 0.15)))
+    b.part("housing", slab(width / 2, (0.2, 0.3), (height - 0.01, height + 0.15)))
     r = 0.19
     g = b.gap(r)
     b.cut("housing", b.cylinder(r + 0.02, (0, -0.05, 0.3), (0, -0.05, height + 0.01)))
-    b.part("drum", b.cylinder(r, (0, -0.05, 0.3 + g), (0, -0.05, height - 0.05)), material="steel")
+    b.part("drum", b.cylinder(r, (0, -0.05, 0.3 + g), (0, -0.05, height - 0.05)), look="steel")
     b.cut("drum", b.cylinder(0.95 * r, (0, -0.05, 0.32), (0, -0.05, height)))
     b.spin("drum", parent="housing", axis=Z, pivot=(0, -0.05, 0.3))
     leaf(
@@ -337,9 +317,9 @@ def manual_coffee_grinder(b: ObjectBuilder, width: float, height: float) -> None
     """A box with a crank above and a drawer below."""
     b.part(
         "mill",
-        box((-width / 2, -width / 2, 0), (width / 2, width / 2, height)),
-        b.cone(0.4 * width, 0.2 * width, (0, 0, height), (0, 0, height + 0.04)),
-        material="wood",
+        slab(width / 2, width / 2, (0, height)),
+        b.cone(0.4 * width, 0.2 * width, height, height + 0.04),
+        look="wood",
     )
     crank(b, "crank", parent="mill", at=(0, 0, height + 0.04), out=Z, length=b.draw(0.08, 0.13))
     drawer(
@@ -355,21 +335,21 @@ def manual_coffee_grinder(b: ObjectBuilder, width: float, height: float) -> None
 @kind("parametric french press", like="plunger_pot", radius=length(0.035, 0.055), height=length(0.12, 0.2))
 def french_press(b: ObjectBuilder, radius: float, height: float) -> None:
     """A plunger through a lid, on a glass."""
-    b.part("glass", b.cylinder(radius, (0, 0, 0), (0, 0, height)), material="glass")
+    b.part("glass", b.cylinder(radius, 0, height), look="glass")
     b.part(
         "glass",
         beam(0.02, 0.01, (radius, 0, 0.8 * height), (radius + 0.04, 0, 0.8 * height)),
         beam(0.02, 0.01, (radius + 0.035, 0, 0.82 * height), (radius + 0.035, 0, 0.2 * height), X),
     )
-    b.cut("glass", b.cylinder(0.92 * radius, (0, 0, 0.005), (0, 0, height + 0.1)))
+    b.cut("glass", b.cylinder(0.92 * radius, 0.005, height + 0.1))
     g = b.gap(radius)
     z = b.draw(0.5, 0.85) * height
     b.part(
         "plunger",
-        b.cylinder(0.92 * radius - 2 * g - 0.0003, (0, 0, z), (0, 0, z + 0.006)),
-        b.cylinder(0.003, (0, 0, z), (0, 0, height + 0.08)),
+        b.cylinder(0.92 * radius - 2 * g - 0.0003, z, z + 0.006),
+        b.cylinder(0.003, z, height + 0.08),
         ball(0.01, (0, 0, height + 0.085)),
-        material="steel",
+        look="steel",
     )
     b.slide("plunger", parent="glass", axis=-Z, upper=0.8 * z, ajar=False)
 
@@ -377,11 +357,11 @@ def french_press(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind("parametric salad spinner", like="salad_spinner", radius=length(0.1, 0.14), height=length(0.12, 0.18))
 def parametric_salad_spinner(b: ObjectBuilder, radius: float, height: float) -> None:
     """A lid with a crank or a pump knob on a bowl."""
-    b.part("bowl", b.cone(0.8 * radius, radius, (0, 0, 0), (0, 0, height)))
+    b.part("bowl", b.cone(0.8 * radius, radius, 0, height))
     if b.style.hollow:
-        b.cut("bowl", b.cone(0.75 * radius, 0.95 * radius, (0, 0, 0.01), (0, 0, height + 0.001)))
+        b.cut("bowl", b.cone(0.75 * radius, 0.95 * radius, 0.01, height + 0.001))
     g = b.gap(radius)
-    b.part("lid", b.cylinder(1.02 * radius, (0, 0, height + g), (0, 0, height + g + 0.03)))
+    b.part("lid", b.cylinder(1.02 * radius, height + g, height + g + 0.03))
     b.slide("lid", parent="bowl", axis=Z, upper=0.1)
     if b.maybe():
         crank(b, "crank", parent="lid", at=(0, 0, height + g + 0.03), out=Z, length=0.6 * radius, spins=False)
@@ -403,15 +383,15 @@ def parametric_soap_dispenser(b: ObjectBuilder, radius: float, height: float) ->
     """A pump head that goes down on a bottle."""
     b.part(
         "bottle",
-        b.pick(b.cylinder(radius, (0, 0, 0), (0, 0, height)), box((-radius, -radius, 0), (radius, radius, height))),
-        b.cylinder(0.4 * radius, (0, 0, height), (0, 0, height + 0.02)),
+        b.pick(b.cylinder(radius, 0, height), slab(radius, radius, (0, height))),
+        b.cylinder(0.4 * radius, height, height + 0.02),
     )
     g = b.gap(0.01)
-    b.bore("bottle", b.cylinder(0.004 + 1.5 * g, (0, 0, 0.3 * height), (0, 0, height + 0.1)))
+    b.bore("bottle", b.cylinder(0.004 + 1.5 * g, 0.3 * height, height + 0.1))
     b.part(
         "pump",
-        b.cylinder(0.004, (0, 0, 0.5 * height if b.style.has_bore else height + 0.02), (0, 0, height + 0.06)),
-        b.cylinder(0.3 * radius, (0, 0, height + 0.05), (0, 0, height + 0.065)),
+        b.cylinder(0.004, 0.5 * height if b.style.has_bore else height + 0.02, height + 0.06),
+        b.cylinder(0.3 * radius, height + 0.05, height + 0.065),
         beam(0.01, 0.008, (0, 0, height + 0.06), (0, -1.6 * radius, height + 0.058)),
     )
     b.slide("pump", parent="bottle", axis=-Z, upper=0.025, ajar=False)
@@ -422,9 +402,9 @@ def parametric_spray_bottle(b: ObjectBuilder, radius: float, height: float) -> N
     """A trigger below a head, a nozzle that turns."""
     b.part(
         "bottle",
-        b.cylinder(radius, (0, 0, 0), (0, 0, height)),
-        b.cone(radius, 0.4 * radius, (0, 0, height), (0, 0, height + 0.04)),
-        box((-0.012, -0.09, height + 0.035), (0.012, 0.03, height + 0.07)),
+        b.cylinder(radius, 0, height),
+        b.cone(radius, 0.4 * radius, height, height + 0.04),
+        slab(0.012, (-0.09, 0.03), (height + 0.035, height + 0.07)),
     )
     g = b.gap(0.01)
     b.part("trigger", beam(0.016, 0.008, (0, -0.07, height + 0.034 - g), (0, -0.09, height - 0.03), Y))
@@ -440,8 +420,8 @@ def dishwasher_with_racks(b: ObjectBuilder, height: float) -> None:
     t = 0.55
     case(b, "washer", lower=(-width / 2, 0, 0), upper=(width / 2, t, height), opening=-Y, wall=0.025, material="steel")
     if not b.style.hollow:
-        b.cut("washer", box((-width / 2 + 0.025, -0.1, 0.12), (width / 2 - 0.025, t - 0.03, height - 0.025)))
-    b.part("washer", box((-width / 2, 0.001, 0), (width / 2, t, 0.12)))
+        b.cut("washer", slab(width / 2 - 0.025, (-0.1, t - 0.03), (0.12, height - 0.025)))
+    b.part("washer", slab(width / 2, (0.001, t), (0, 0.12)))
     leaf(
         b,
         "door",
@@ -456,7 +436,7 @@ def dishwasher_with_racks(b: ObjectBuilder, height: float) -> None:
     g = b.gap(0.05)
     for k, z in enumerate((0.17, 0.5 * height)):
         a = width / 2 - 0.03 - g
-        b.part(f"rack_{k}", box((-a, 0.02, z), (a, t - 0.06, z + 0.015)), material="metal")
+        b.part(f"rack_{k}", slab(a, (0.02, t - 0.06), (z, z + 0.015)), look="metal")
         for x in (-a, a - 0.008):
             b.part(f"rack_{k}", box((x, 0.02, z), (x + 0.008, t - 0.06, z + 0.12)))
         for y in spread(b.count(3, 6), 0.04, t - 0.08):
@@ -466,21 +446,16 @@ def dishwasher_with_racks(b: ObjectBuilder, height: float) -> None:
 
 @kind("lazy susan", like="cake_stand", radius=length(0.15, 0.35))
 def lazy_susan(b: ObjectBuilder, radius: float) -> None:
-    b.part(
-        "base",
-        b.cylinder(0.4 * radius, (0, 0, 0), (0, 0, 0.02)),
-        b.cylinder(0.02, (0, 0, 0.02), (0, 0, 0.028)),
-        material="wood",
-    )
-    b.part("tray", b.cylinder(radius, (0, 0, 0.021), (0, 0, 0.05)), material="wood")
-    b.cut("tray", b.cylinder(0.95 * radius, (0, 0, 0.036), (0, 0, 0.1)), b.cylinder(0.022, (0, 0, 0), (0, 0, 0.03)))
+    b.part("base", b.cylinder(0.4 * radius, 0, 0.02), b.cylinder(0.02, 0.02, 0.028), look="wood")
+    b.part("tray", b.cylinder(radius, 0.021, 0.05), look="wood")
+    b.cut("tray", b.cylinder(0.95 * radius, 0.036, 0.1), b.cylinder(0.022, 0, 0.03))
     b.spin("tray", parent="base", axis=Z, pivot=(0, 0, 0))
 
 
 @kind("radio", like="boombox", width=length(0.18, 0.3), height=length(0.12, 0.18))
 def radio(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
-    b.part("case", box((-w, -0.03, 0), (w, 0.03, height)), material="wood")
+    b.part("case", slab(w, 0.03, (0, height)), look="wood")
     for k, x in enumerate((0.4 * w, 0.75 * w)):
         knob(b, f"knob_{k}", parent="case", at=(x, -0.03, 0.35 * height), radius=0.016, high=0.015, out=-Y)
     b.part(
@@ -496,7 +471,7 @@ def radio(b: ObjectBuilder, width: float, height: float) -> None:
         "antenna",
         b.cylinder(0.0025, (-0.8 * w, 0.02, 0.025), (-0.8 * w, 0.02, height + 0.07)),
         ball(0.004, (-0.8 * w, 0.02, height + 0.072)),
-        material="chrome",
+        look="chrome",
     )
     b.slide("antenna", parent="case", axis=Z, upper=0.1)
     bail(
@@ -518,9 +493,9 @@ def ceiling_fan(b: ObjectBuilder, height: float, radius: float) -> None:
     """Blades on a motor below a rod, pull chain now and then."""
     b.part(
         "mount",
-        b.cylinder(0.06, (0, 0, height), (0, 0, height + 0.04)),
-        b.cylinder(0.012, (0, 0, 0), (0, 0, height + 0.02)),
-        b.cylinder(0.08, (0, 0, -0.06), (0, 0, 0.02)),
-        material="metal",
+        b.cylinder(0.06, height, height + 0.04),
+        b.cylinder(0.012, 0, height + 0.02),
+        b.cylinder(0.08, -0.06, 0.02),
+        look="metal",
     )
     rotor(b, "rotor", parent="mount", at=(0, 0, -0.06), out=-Z, radius=radius, blades=b.count(3, 5), wide=0.2)

@@ -11,7 +11,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import bail, button, case, caster, crank, knob, legs, lever, plunger, wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, scaled, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, scaled, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -24,7 +24,7 @@ def parametric_gyroscope(b: ObjectBuilder, radius: float) -> None:
     c = vector(0, 0, 1.7 * radius)
     b.part(
         "stand",
-        b.cylinder(0.8 * radius, (0, 0, 0), (0, 0, 0.1 * radius)),
+        b.cylinder(0.8 * radius, 0, 0.1 * radius),
         [
             beam(
                 0.1 * radius,
@@ -36,13 +36,13 @@ def parametric_gyroscope(b: ObjectBuilder, radius: float) -> None:
             for s in (-1, 1)
         ],
         beam(0.1 * radius, 0.1 * radius, (-1.5 * radius, 0, 0.05 * radius), (1.5 * radius, 0, 0.05 * radius)),
-        material="metal",
+        look="metal",
     )
     b.part(
         "gimbal",
         b.tube(1.38 * radius, 1.25 * radius, c - 0.06 * radius * Y, c + 0.06 * radius * Y),
         [b.cylinder(0.04 * radius, c + s * 1.3 * radius * X, c + s * 1.55 * radius * X) for s in (-1, 1)],
-        material="metal",
+        look="metal",
     )
     b.bore("stand", b.cylinder(0.04 * radius + 1.5 * g, c - 2 * radius * X, c + 2 * radius * X))
     b.spin("gimbal", parent="stand", axis=X, pivot=c)
@@ -50,7 +50,7 @@ def parametric_gyroscope(b: ObjectBuilder, radius: float) -> None:
         "wheel",
         b.cylinder(1 * radius, c - 0.08 * radius * Y, c + 0.08 * radius * Y),
         b.cylinder(0.04 * radius, c - 1.24 * radius * Z, c + 1.24 * radius * Z),
-        material="metal",
+        look="metal",
     )
     b.part("gimbal", [b.cylinder(0.06 * radius, c + s * 1.245 * radius * Z, c + s * 1.3 * radius * Z) for s in (-1, 1)])
     b.spin("wheel", parent="gimbal", axis=Z, pivot=c)
@@ -62,10 +62,10 @@ def upright_piano(b: ObjectBuilder, number: int) -> None:
     w = 1 * b.draw(0.6, 1.4)
     b.part(
         "piano",
-        box((-w / 2, 0, 0), (w / 2, 0.35, 1.2)),
-        box((-w / 2, -0.25, 0.6), (w / 2, 0.01, 0.65)),
+        slab(w / 2, (0, 0.35), (0, 1.2)),
+        slab(w / 2, (-0.25, 0.01), (0.6, 0.65)),
         [box((s * w / 2, -0.28, 0), (s * (w / 2 - 0.04), 0.01, 0.8)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     g = max(b.gap(0.05), 0.0005)
     for k, x in enumerate(spread(number, -w / 2 + 0.05, w / 2 - 0.05)):
@@ -73,7 +73,7 @@ def upright_piano(b: ObjectBuilder, number: int) -> None:
         b.part(f"key_{k}", box((x - a, -0.2, 0.665), (x + a, -g, 0.685)))
         b.hinge(f"key_{k}", parent="piano", axis=X, pivot=(x, -g, 0.665), upper=0.05, ajar=False)
     for k, x in enumerate((-0.08, 0.08)):
-        b.part(f"pedal_{k}", box((x - 0.02, -0.12, 0.06), (x + 0.02, -g, 0.075)), material="metal")
+        b.part(f"pedal_{k}", box((x - 0.02, -0.12, 0.06), (x + 0.02, -g, 0.075)), look="metal")
         b.hinge(f"pedal_{k}", parent="piano", axis=X, pivot=(x, -g, 0.06), upper=0.15, ajar=False)
     leaf(
         b,
@@ -93,22 +93,22 @@ def parametric_hi_hat(b: ObjectBuilder, height: float, radius: float) -> None:
     """A bass drum pedal, and a hi-hat whose upper cymbal rides on its rod."""
     b.part(
         "stand",
-        b.cylinder(0.012, (0, 0, 0.02), (0, 0, height - 0.02)),
+        b.cylinder(0.012, 0.02, height - 0.02),
         [b.cylinder(0.01, (0, 0, 0.3 * height), (0.3 * cos(a), 0.3 * sin(a), 0)) for a in np.arange(3) * 2.1 + 1.57],
-        b.cone(radius, 0.03, (0, 0, height), (0, 0, height - 0.03)),
-        box((-0.05, -0.35, 0), (0.05, 0, 0.02)),
-        material="metal",
+        b.cone(radius, 0.03, height, height - 0.03),
+        slab(0.05, (-0.35, 0), (0, 0.02)),
+        look="metal",
     )
     g = b.gap(0.01) + 0.0003
     b.part(
         "cymbal",
-        b.cone(radius, 0.03, (0, 0, height + 0.012), (0, 0, height + 0.05)),
-        b.cylinder(0.004, (0, 0, height - 0.2 if b.style.has_bore else height + 0.01), (0, 0, height + 0.2)),
-        material="metal",
+        b.cone(radius, 0.03, height + 0.012, height + 0.05),
+        b.cylinder(0.004, height - 0.2 if b.style.has_bore else height + 0.01, height + 0.2),
+        look="metal",
     )
-    b.bore("stand", b.cylinder(0.004 + 1.5 * g, (0, 0, height - 0.25), (0, 0, height + 1)))
+    b.bore("stand", b.cylinder(0.004 + 1.5 * g, height - 0.25, height + 1))
     b.slide("cymbal", parent="stand", axis=Z, upper=0.05, ajar=False)
-    b.part("pedal", beam(0.08, 0.01, (0, -0.33, 0.03 + g), (0, -0.05, 0.12)), material="metal")
+    b.part("pedal", beam(0.08, 0.01, (0, -0.33, 0.03 + g), (0, -0.05, 0.12)), look="metal")
     b.hinge("pedal", parent="stand", axis=X, pivot=(0, -0.33, 0.03 + g), upper=0.05, lower=-0.25, ajar=False)
 
 
@@ -123,7 +123,7 @@ def parametric_metronome(b: ObjectBuilder, height: float) -> None:
             0.4 * height,
             "y",
         ),
-        material="wood",
+        look="wood",
     )
     g = b.gap(0.01) + 0.0003
     y = -0.2 * height - g - 0.004
@@ -131,18 +131,18 @@ def parametric_metronome(b: ObjectBuilder, height: float) -> None:
         "rod",
         beam(0.008, 0.004, (0, y, 0.2 * height), (0, y, 1.1 * height), Y),
         b.cylinder(0.01, (0, y - 0.004, 0.2 * height), (0, y + 0.004, 0.2 * height)),
-        material="metal",
+        look="metal",
     )
     b.hinge("rod", parent="case", axis=-Y, pivot=(0, y, 0.2 * height), upper=0.6, lower=-0.6)
     z = b.draw(0.5, 0.8) * height
-    b.part("weight", box((-0.015, y - 0.012, z), (0.015, y - 0.002 - g, z + 0.025)), material="metal")
+    b.part("weight", slab(0.015, (y - 0.012, y - 0.002 - g), (z, z + 0.025)), look="metal")
     b.slide("weight", parent="rod", axis=Z, upper=0.2 * height, lower=-0.1 * height, ajar=False)
 
 
 @kind("parametric wall clock", like="clock", radius=length(0.08, 0.25))
 def wall_clock(b: ObjectBuilder, radius: float) -> None:
     """Two or three hands about one axis, a pendulum."""
-    b.part("clock", b.cylinder(radius, (0, 0, 0), (0, 0.04, 0)), material="wood")
+    b.part("clock", b.cylinder(radius, (0, 0, 0), (0, 0.04, 0)), look="wood")
     g = b.gap(0.01) + 0.0005
     y = 0.0
     for name, n, wide in (("hour_hand", 0.5, 0.08), ("minute_hand", 0.8, 0.05), ("second_hand", 0.85, 0.02))[
@@ -161,7 +161,7 @@ def wall_clock(b: ObjectBuilder, radius: float) -> None:
                 Y,
             ),
             b.cylinder(0.06 * radius, (0, y, 0), (0, y - 0.002, 0)),
-            material="metal",
+            look="metal",
         )
         b.spin(name, parent="clock", axis=-Y, pivot=(0, 0, 0))
         y = y - 0.002
@@ -170,13 +170,13 @@ def wall_clock(b: ObjectBuilder, radius: float) -> None:
             "clock",
             box((-0.4 * radius, 0, -2.6 * radius), (-0.35 * radius, 0.04, -0.8 * radius)),
             box((0.35 * radius, 0, -2.6 * radius), (0.4 * radius, 0.04, -0.8 * radius)),
-            box((-0.4 * radius, 0.03, -2.6 * radius), (0.4 * radius, 0.04, -0.8 * radius)),
+            slab(0.4 * radius, (0.03, 0.04), (-2.6 * radius, -0.8 * radius)),
         )
         b.part(
             "pendulum",
             b.cylinder(0.02 * radius, (0, 0.015, -1.02 * radius - g), (0, 0.015, -2.1 * radius)),
             b.cylinder(0.15 * radius, (0, 0.01, -2.2 * radius), (0, 0.02, -2.2 * radius)),
-            material="metal",
+            look="metal",
         )
         b.hinge(
             "pendulum",
@@ -194,22 +194,22 @@ def parametric_exercise_bike(b: ObjectBuilder, radius: float) -> None:
     """A flywheel, cranks, a seat post."""
     b.part(
         "frame",
-        box((-0.5, -0.25, 0), (-0.42, 0.25, 0.06)),
-        box((0.45, -0.25, 0), (0.53, 0.25, 0.06)),
-        box((-0.45, -0.025, 0.02), (0.5, 0.025, 0.07)),
+        slab((-0.5, -0.42), 0.25, (0, 0.06)),
+        slab((0.45, 0.53), 0.25, (0, 0.06)),
+        slab((-0.45, 0.5), 0.025, (0.02, 0.07)),
         beam(0.06, 0.06, (-0.2, 0, 0.05), (-0.25, 0, 0.6)),
         [box((0.3 - 0.02, s * 0.06 - 0.01, 0.05), (0.32, s * 0.06 + 0.01, 0.08 + 2.3 * radius)) for s in (-1, 1)],
-        box((0.28, -0.07, 0.06 + 2.2 * radius), (0.34, 0.07, 1)),
+        slab((0.28, 0.34), 0.07, (0.06 + 2.2 * radius, 1)),
         b.cylinder(0.015, (0.31, -0.25, 1), (0.31, 0.25, 1)),
-        box((-0.05, -0.03, 0.05), (0.05, 0.03, 0.36)),
-        material="steel",
+        slab(0.05, 0.03, (0.05, 0.36)),
+        look="steel",
     )
     g = b.gap(0.02) + 0.0005
     b.part(
         "flywheel",
         b.cylinder(radius, (0.3, -0.02, 0.09 + radius), (0.3, 0.02, 0.09 + radius)),
         b.cylinder(0.012, (0.3, -0.08, 0.09 + radius), (0.3, 0.08, 0.09 + radius)),
-        material="steel",
+        look="steel",
     )
     b.bore("frame", b.cylinder(0.012 + 1.5 * g, (0.3, -0.1, 0.09 + radius), (0.3, 0.1, 0.09 + radius)))
     b.spin("flywheel", parent="frame", axis=Y, pivot=(0.3, 0, 0.09 + radius))
@@ -219,7 +219,7 @@ def parametric_exercise_bike(b: ObjectBuilder, radius: float) -> None:
             "cranks",
             beam(0.012, 0.03, c + s * 0.05 * Y, c + s * 0.05 * Y + s * 0.16 * X),
             box(c + vector(s * 0.16 - 0.03, s * 0.06, -0.01), c + vector(s * 0.16 + 0.03, s * 0.14, 0.01)),
-            material="metal",
+            look="metal",
         )
     b.part("cranks", b.cylinder(0.01, c - 0.06 * Y, c + 0.06 * Y))
     b.bore("frame", b.cylinder(0.01 + 1.5 * g, c - 0.1 * Y, c + 0.1 * Y))
@@ -233,7 +233,7 @@ def parametric_exercise_bike(b: ObjectBuilder, radius: float) -> None:
             (-0.21, 0, 0.2) if b.style.has_bore else (-0.25, 0, 0.6),
             (-0.27, 0, 0.8),
         ),
-        box((-0.4, -0.1, 0.8), (-0.15, 0.1, 0.86)),
+        slab((-0.4, -0.15), 0.1, (0.8, 0.86)),
     )
     b.slide("seat", parent="frame", axis=vector(-0.07, 0, 0.7) / np.hypot(0.07, 0.7), upper=0.15, ajar=False)
 
@@ -243,18 +243,18 @@ def parametric_basketball_hoop(b: ObjectBuilder, height: float) -> None:
     """A ring that folds down on a board, on a base with wheels."""
     b.part(
         "stand",
-        box((-0.4, 0, 0), (0.4, 0.7, 0.15)),
+        slab(0.4, (0, 0.7), (0, 0.15)),
         beam(0.1, 0.1, (0, 0.4, 0.1), (0, 0.4, height), Y),
-        box((-0.55, 0.05, height - 0.1), (0.55, 0.08, height + 0.65)),
+        slab(0.55, (0.05, 0.08), (height - 0.1, height + 0.65)),
         beam(0.08, 0.08, (0, 0.4, height - 0.05), (0, 0.07, height)),
-        material="steel",
+        look="steel",
     )
     g = b.gap(0.05) + 0.0005
     b.part(
         "ring",
         b.torus(0.23, 0.01, (0, -0.25, height + 0.02), Z),
-        box((-0.06, -0.03, height), (0.06, 0.05 - g, height + 0.04)),
-        material="steel",
+        slab(0.06, (-0.03, 0.05 - g), (height, height + 0.04)),
+        look="steel",
     )
     b.hinge("ring", parent="stand", axis=X, pivot=(0, 0.05 - g, height + (0 if b.style.has_bore else 0.02)), upper=0.6)
     for s in (-1, 1):
@@ -277,10 +277,10 @@ def table_football(b: ObjectBuilder, length: float) -> None:
     z = 0.8
     b.part(
         "table",
-        box((-w / 2, -length / 2, z - 0.25), (w / 2, length / 2, z - 0.2)),
-        [box((s * w / 2, -length / 2, z - 0.25), (s * (w / 2 - 0.03), length / 2, z)) for s in (-1, 1)],
-        [box((-w / 2, s * length / 2, z - 0.25), (w / 2, s * (length / 2 - 0.03), z)) for s in (-1, 1)],
-        material="wood",
+        slab(w / 2, length / 2, (z - 0.25, z - 0.2)),
+        [slab((s * w / 2, s * (w / 2 - 0.03)), length / 2, (z - 0.25, z)) for s in (-1, 1)],
+        [slab(w / 2, (s * length / 2, s * (length / 2 - 0.03)), (z - 0.25, z)) for s in (-1, 1)],
+        look="wood",
     )
     legs(b, "table", lower=(-w / 2, -length / 2, 0), upper=(w / 2, length / 2, z - 0.24), thick=0.08)
     g = b.gap(0.01) + 0.0003
@@ -293,7 +293,7 @@ def table_football(b: ObjectBuilder, length: float) -> None:
                 box((x - 0.015, y - 0.01, z - 0.16), (x + 0.015, y + 0.01, z - 0.02))
                 for x in spread(b.count(1, 4), -0.3, 0.3)
             ],
-            material="metal",
+            look="metal",
         )
         b.bore("table", b.cylinder(0.008 + 1.5 * g, (-w, y, z - 0.06), (w, y, z - 0.06)))
         b.spin(f"rod_{k}", parent="table", axis=X, pivot=(0, y, z - 0.06))
@@ -304,20 +304,20 @@ def parametric_hole_punch(b: ObjectBuilder, length: float, width: float) -> None
     """A lever on a base."""
     b.part(
         "base",
-        box((-length / 2, -width / 2, 0), (length / 2, width / 2, 0.012)),
+        slab(length / 2, width / 2, (0, 0.012)),
         [
             box((-0.35 * length, s * 0.3 * width, 0.01), (-0.15 * length, s * (0.3 * width - 0.004), 0.05))
             for s in (-1, 1)
         ],
-        material="steel",
+        look="steel",
     )
     g = b.gap(0.005) + 0.0002
     half = 0.3 * width - 0.004 - g
     b.part(
         "handle",
-        box((-0.3 * length, -half, 0.035), (0.6 * length, half, 0.045)),
+        slab((-0.3 * length, 0.6 * length), half, (0.035, 0.045)),
         [box((-0.3 * length, s * half, 0.028), (-0.2 * length, s * (half - 0.003), 0.04)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
     if not b.style.has_bore:
         b.part(
@@ -337,9 +337,9 @@ def parametric_hole_punch(b: ObjectBuilder, length: float, width: float) -> None
 def parametric_ring_binder(b: ObjectBuilder, width: float, height: float, thickness: float) -> None:
     """Two covers about a spine, lying open or shut."""
     g = b.gap(0.01) + 0.0002
-    b.part("spine", box((-0.003, 0, 0), (0, height, thickness)), material="cardboard")
+    b.part("spine", box((-0.003, 0, 0), (0, height, thickness)), look="cardboard")
     for k, (z0, z1) in enumerate(((-0.003 - g, -g), (thickness + g, thickness + g + 0.003))):
-        b.part(f"cover_{k}", box((-0.003, 0, z0), (width, height, z1)), material="cardboard")
+        b.part(f"cover_{k}", box((-0.003, 0, z0), (width, height, z1)), look="cardboard")
         b.hinge(
             f"cover_{k}",
             parent="spine",
@@ -362,16 +362,12 @@ def folding_phone(b: ObjectBuilder, width: float, thickness: float, a: float, ro
     g = b.gap(0.005) + 0.0001
     b.part(
         "lower",
-        b.cylinder(width / 2, (0, 0, 0), (0, 0, a))
-        if round_
-        else box((-width / 2, -thickness / 2, 0), (width / 2, thickness / 2, a)),
+        b.cylinder(width / 2, 0, a) if round_ else slab(width / 2, thickness / 2, (0, a)),
     )
     y = width / 2 if round_ else thickness / 2
     b.part(
         "upper",
-        b.cylinder(width / 2, (0, 0, a + g), (0, 0, 2 * a))
-        if round_
-        else box((-width / 2, -thickness / 2, a + g), (width / 2, thickness / 2, 2 * a)),
+        b.cylinder(width / 2, a + g, 2 * a) if round_ else slab(width / 2, thickness / 2, (a + g, 2 * a)),
     )
     if b.style.barrels and (not b.style.has_bore):
         b.part(
@@ -397,20 +393,19 @@ def folding_phone(b: ObjectBuilder, width: float, thickness: float, a: float, ro
 @kind("parametric refracting telescope", like="telescope", size=length(0.5, 1.2))
 def refracting_telescope(b: ObjectBuilder, size: float) -> None:
     """An optical tube on a mount with two axes, a focuser that draws out."""
-    b.part("pier", b.cone(0.15 * size, 0.08 * size, (0, 0, 0), (0, 0, 0.8 * size)), material="metal")
+    b.part("pier", b.cone(0.15 * size, 0.08 * size, 0, 0.8 * size), look="metal")
     g = b.gap(0.03 * size) + 0.0003
     b.part(
         "fork",
-        b.cylinder(0.1 * size, (0, 0, 0.8 * size + g), (0, 0, 0.86 * size)),
+        b.cylinder(0.1 * size, 0.8 * size + g, 0.86 * size),
         [
-            box(
-                (s * 0.11 * size - 0.015 * size, -0.04 * size, 0.84 * size),
-                (s * 0.11 * size + 0.015 * size, 0.04 * size, 1.1 * size),
+            slab(
+                (s * 0.11 * size - 0.015 * size, s * 0.11 * size + 0.015 * size), 0.04 * size, (0.84 * size, 1.1 * size)
             )
             for s in (-1, 1)
         ],
-        box((-0.12 * size, -0.04 * size, 0.83 * size), (0.12 * size, 0.04 * size, 0.87 * size)),
-        material="metal",
+        slab(0.12 * size, 0.04 * size, (0.83 * size, 0.87 * size)),
+        look="metal",
     )
     b.spin("fork", parent="pier", axis=Z, pivot=(0, 0, 0.8 * size))
     c = vector(0, 0, 1.05 * size)
@@ -418,7 +413,7 @@ def refracting_telescope(b: ObjectBuilder, size: float) -> None:
         "tube",
         b.cylinder(0.07 * size, c - 0.5 * size * Y, c + 0.4 * size * Y),
         [b.cylinder(0.03 * size, c + s * 0.05 * size * X, c + s * (0.095 * size - g) * X) for s in (-1, 1)],
-        material="metal",
+        look="metal",
     )
     b.hinge("tube", parent="fork", axis=X, pivot=c, upper=0.35, lower=-0.35, ajar=False)
     plunger(
@@ -442,13 +437,13 @@ def parametric_centrifuge(b: ObjectBuilder, radius: float) -> None:
         upper=(1.3 * radius, 1.3 * radius, 1.3 * radius),
         material="plastic",
     )
-    b.cut("housing", b.cylinder(1.1 * radius, (0, 0, 0.4 * radius), (0, 0, 2 * radius)))
+    b.cut("housing", b.cylinder(1.1 * radius, 0.4 * radius, 2 * radius))
     g = b.gap(0.05 * radius)
     b.part(
         "rotor",
-        b.cone(0.95 * radius, 0.6 * radius, (0, 0, 0.5 * radius), (0, 0, 1 * radius)),
-        b.cylinder(0.15 * radius, (0, 0, 0.4 * radius + g), (0, 0, 0.55 * radius)),
-        material="metal",
+        b.cone(0.95 * radius, 0.6 * radius, 0.5 * radius, 1 * radius),
+        b.cylinder(0.15 * radius, 0.4 * radius + g, 0.55 * radius),
+        look="metal",
     )
     b.spin("rotor", parent="housing", axis=Z, pivot=(0, 0, 0.4 * radius))
     leaf(
@@ -480,19 +475,19 @@ def parametric_hospital_bed(b: ObjectBuilder, width: float, z: float) -> None:
     n = 2.0
     b.part(
         "frame",
-        box((0, -width / 2, z - 0.1), (n, width / 2, z)),
-        box((0.75, -width / 2, z), (n, width / 2, z + 0.1)),
-        box((-0.03, -width / 2, z - 0.2), (0, width / 2, z + 0.5)),
-        box((n, -width / 2, z - 0.2), (n + 0.03, width / 2, z + 0.4)),
+        slab((0, n), width / 2, (z - 0.1, z)),
+        slab((0.75, n), width / 2, (z, z + 0.1)),
+        slab((-0.03, 0), width / 2, (z - 0.2, z + 0.5)),
+        slab((n, n + 0.03), width / 2, (z - 0.2, z + 0.4)),
         [
             box((x - 0.04, s * 0.4 * width - 0.04, 0.15), (x + 0.04, s * 0.4 * width + 0.04, z - 0.05))
             for x in (0.2, n - 0.2)
             for s in (-1, 1)
         ],
-        material="steel",
+        look="steel",
     )
     g = b.gap(0.05) + 0.0005
-    b.part("back", box((0.03, -width / 2 + 0.02, z + g), (0.75 - g, width / 2 - 0.02, z + 0.1)))
+    b.part("back", slab((0.03, 0.75 - g), width / 2 - 0.02, (z + g, z + 0.1)))
     b.hinge(
         "back",
         parent="frame",
@@ -506,7 +501,7 @@ def parametric_hospital_bed(b: ObjectBuilder, width: float, z: float) -> None:
             f"rail_{k}",
             [b.cylinder(0.012, (0.5, y + s * 0.012, q), (1.5, y + s * 0.012, q)) for q in (z, z + 0.15, z + 0.3)],
             [b.cylinder(0.01, (x, y + s * 0.012, z - 0.02), (x, y + s * 0.012, z + 0.3)) for x in spread(5, 0.5, 1.5)],
-            material="steel",
+            look="steel",
         )
         if b.maybe():
             b.slide(f"rail_{k}", parent="frame", axis=-Z, upper=0.3, ajar=False)
@@ -526,7 +521,7 @@ def parametric_hospital_bed(b: ObjectBuilder, width: float, z: float) -> None:
 @kind("parametric drip stand", like="iv_stand", height=length(0.9, 1.2), number=whole(4, 5, words="caster, wheel"))
 def drip_stand(b: ObjectBuilder, height: float, number: int) -> None:
     """A pole that telescopes on five casters, hooks that turn."""
-    b.part("foot", b.cylinder(0.015, (0, 0, 0.1), (0, 0, height)), material="steel")
+    b.part("foot", b.cylinder(0.015, 0.1, height), look="steel")
     for k, a in enumerate(np.arange(number) * 2 * pi / number):
         tip = vector(0.3 * cos(a), 0.3 * sin(a), 0.09)
         b.part(
@@ -557,15 +552,15 @@ def interior_door(b: ObjectBuilder, width: float, height: float, thickness: floa
     b.part(
         "frame",
         [box((s * width / 2, -0.03, 0), (s * (width / 2 + 0.07), 0.09, height + 0.07)) for s in (-1, 1)],
-        box((-width / 2 - 0.07, -0.03, height), (width / 2 + 0.07, 0.09, height + 0.07)),
-        material="wood",
+        slab(width / 2 + 0.07, (-0.03, 0.09), (height, height + 0.07)),
+        look="wood",
     )
     if b.maybe(0.4):
         b.part(
             "frame",
             box((-width / 2 - 0.9, 0, 0), (-width / 2 - 0.06, 0.07, height + 0.4)),
             box((width / 2 + 0.06, 0, 0), (width / 2 + 0.9, 0.07, height + 0.4)),
-            box((-width / 2 - 0.1, 0, height + 0.06), (width / 2 + 0.1, 0.07, height + 0.4)),
+            slab(width / 2 + 0.1, (0, 0.07), (height + 0.06, height + 0.4)),
         )
     side = b.pick(X, -X)
     g = 0.003
@@ -604,19 +599,14 @@ def interior_door(b: ObjectBuilder, width: float, height: float, thickness: floa
 )
 def parametric_revolving_door(b: ObjectBuilder, radius: float, height: float, number: int) -> None:
     """Wings about a post in a drum."""
-    b.part(
-        "drum",
-        b.cylinder(radius + 0.1, (0, 0, height), (0, 0, height + 0.15)),
-        b.cylinder(radius + 0.1, (0, 0, -0.03), (0, 0, 0)),
-        material="metal",
-    )
-    wall = b.tube(radius + 0.08, radius + 0.03, (0, 0, -0.01), (0, 0, height + 0.01))
-    b.part("drum", wall, material="glass")
-    b.cut("drum", box((-0.7 * radius, -2 * radius, 0.001), (0.7 * radius, 2 * radius, height - 0.001)))
+    b.part("drum", b.cylinder(radius + 0.1, height, height + 0.15), b.cylinder(radius + 0.1, -0.03, 0), look="metal")
+    wall = b.tube(radius + 0.08, radius + 0.03, -0.01, height + 0.01)
+    b.part("drum", wall, look="glass")
+    b.cut("drum", slab(0.7 * radius, 2 * radius, (0.001, height - 0.001)))
     g = b.gap(0.05) + 0.001
     b.part(
         "wings",
-        b.cylinder(0.04, (0, 0, g), (0, 0, height - g)),
+        b.cylinder(0.04, g, height - g),
         [
             beam(
                 height - 0.1,
@@ -627,7 +617,7 @@ def parametric_revolving_door(b: ObjectBuilder, radius: float, height: float, nu
             )
             for a in np.arange(number) * 2 * pi / number
         ],
-        material="glass",
+        look="glass",
     )
     b.spin("wings", parent="drum", axis=Z, pivot=(0, 0, 0))
 
@@ -646,8 +636,8 @@ def casement_window(b: ObjectBuilder, width: float, height: float, number: int, 
     b.part(
         "frame",
         [box((s * width / 2, 0, 0), (s * (width / 2 + t), 0.07, height)) for s in (-1, 1)],
-        [box((-width / 2 - t, 0, z), (width / 2 + t, 0.07, z + t)) for z in (-t, height)],
-        material="wood",
+        [slab(width / 2 + t, (0, 0.07), (z, z + t)) for z in (-t, height)],
+        look="wood",
     )
     for k, x in enumerate(spread(number, -width / 2, width / 2)):
         hinge = -Z if way == "bottom" else Z if way == "top" else -X if k == 0 else X
@@ -694,8 +684,8 @@ def treasure_chest(b: ObjectBuilder, width: float, depth: float, height: float) 
         wall=0.04 * depth,
     )
     g = b.gap(0.05) + 0.0002
-    b.part("lid", b.cylinder(depth / 2, (-width / 2, 0, height + g), (width / 2, 0, height + g)), material="wood")
-    b.cut("lid", box((-width, -depth, height - depth), (width, depth, height + g)))
+    b.part("lid", b.cylinder(depth / 2, (-width / 2, 0, height + g), (width / 2, 0, height + g)), look="wood")
+    b.cut("lid", slab(width, depth, (height - depth, height + g)))
     if b.style.hollow:
         b.cut("lid", b.cylinder(0.44 * depth, (-0.46 * width, 0, height), (0.46 * width, 0, height)))
     b.hinge("lid", parent="chest", axis=-X, pivot=(0, depth / 2, height + g / 2), upper=b.draw(1.2, 1.8))
@@ -735,21 +725,21 @@ def treasure_chest(b: ObjectBuilder, width: float, depth: float, height: float) 
 )
 def carousel(b: ObjectBuilder, radius: float, number: int, key: bool) -> None:
     """A disc that turns with figures on rods that go up and down, a winding key."""
-    b.part("base", b.cylinder(radius, (0, 0, 0), (0, 0, 0.4 * radius)), material="wood")
+    b.part("base", b.cylinder(radius, 0, 0.4 * radius), look="wood")
     g = b.gap(0.02 * radius) + 0.0002
     b.part(
         "carousel",
-        b.cylinder(0.9 * radius, (0, 0, 0.4 * radius + g), (0, 0, 0.5 * radius)),
-        b.cylinder(0.06 * radius, (0, 0, 0.45 * radius), (0, 0, 1.6 * radius)),
-        b.cone(0.95 * radius, 0.1 * radius, (0, 0, 1.5 * radius), (0, 0, 2 * radius)),
-        material="wood",
+        b.cylinder(0.9 * radius, 0.4 * radius + g, 0.5 * radius),
+        b.cylinder(0.06 * radius, 0.45 * radius, 1.6 * radius),
+        b.cone(0.95 * radius, 0.1 * radius, 1.5 * radius, 2 * radius),
+        look="wood",
     )
     b.spin("carousel", parent="base", axis=Z, pivot=(0, 0, 0.4 * radius))
     for k, a in enumerate(np.arange(number) * 2 * pi / number):
         p = 0.65 * radius * vector(cos(a), sin(a), 0)
         z = b.draw(0.75, 1) * radius
         b.part("carousel", b.cylinder(0.02 * radius, p + 0.49 * radius * Z, p + 1.55 * radius * Z))
-        b.part(f"horse_{k}", block(p + z * Z, (0.25 * radius, 0.15 * radius, 0.2 * radius)), material="wood")
+        b.part(f"horse_{k}", block(p + z * Z, (0.25 * radius, 0.15 * radius, 0.2 * radius)), look="wood")
         b.bore(f"horse_{k}", b.cylinder(0.02 * radius + 1.5 * g, p, p + 3 * radius * Z))
         b.slide(f"horse_{k}", parent="carousel", axis=Z, upper=0.25 * radius, lower=-0.1 * radius, ajar=False)
     if key:
@@ -758,7 +748,7 @@ def carousel(b: ObjectBuilder, radius: float, number: int, key: bool) -> None:
             "key",
             b.cylinder(0.05 * radius, at - g * Y, at - 0.15 * radius * Y),
             block(at - 0.25 * radius * Y, (0.35 * radius, 0.2 * radius, 0.05 * radius)),
-            material="metal",
+            look="metal",
         )
         b.spin("key", parent="base", axis=-Y, pivot=at)
 
@@ -774,13 +764,13 @@ def parametric_nutcracker(b: ObjectBuilder, length: float) -> None:
         "arm_a",
         beam(k, 0.9 * k, (-front, -gap_y, -0.02 * length), (length, -gap_y, 0.12 * length), Y),
         b.cylinder(0.8 * k, (0, -gap_y - 0.45 * k, 0), (0, -gap_y + 0.45 * k, 0)),
-        material="steel",
+        look="steel",
     )
     b.part(
         "arm_b",
         beam(k, 0.9 * k, (-front, gap_y, 0.02 * length), (length, gap_y, -0.12 * length), Y),
         b.cylinder(0.8 * k, (0, gap_y - 0.45 * k, 0), (0, gap_y + 0.45 * k, 0)),
-        material="steel",
+        look="steel",
     )
     if b.style.barrels:
         b.part("arm_a", b.cylinder(0.3 * k, (0, -gap_y, 0), (0, gap_y + 0.6 * k, 0)))
@@ -797,9 +787,9 @@ def parametric_pocket_knife(b: ObjectBuilder, length: float, m: int) -> None:
     half = m * pitch / 2
     b.part(
         "handle",
-        [box((0, s * (half + 0.03 * length), -k), (length, s * half, k)) for s in (-1, 1)],
-        box((0.02 * length, -half, -k), (0.98 * length, half, -0.8 * k)),
-        material="steel",
+        [slab((0, length), (s * (half + 0.03 * length), s * half), k) for s in (-1, 1)],
+        slab((0.02 * length, 0.98 * length), half, (-k, -0.8 * k)),
+        look="steel",
     )
     for j, y in enumerate(spread(m, -half, half)):
         end = 0.08 * length if j % 2 == 0 else 0.92 * length
@@ -809,7 +799,7 @@ def parametric_pocket_knife(b: ObjectBuilder, length: float, m: int) -> None:
             f"blade_{j}",
             box((end - s * 0.06 * length, y - a, 0 * k), (end + s * 0.8 * length, y + a, 0.9 * k)),
             b.cylinder(0.6 * k, (end, y - a, 0.3 * k), (end, y + a, 0.3 * k)),
-            material="steel",
+            look="steel",
         )
         if not b.style.has_bore:
             b.part("handle", b.cylinder(0.15 * k, (end, y - pitch / 2, 0.3 * k), (end, y + pitch / 2, 0.3 * k)))
@@ -821,19 +811,16 @@ def parametric_pocket_knife(b: ObjectBuilder, length: float, m: int) -> None:
 @kind("parametric dish antenna", like="radar_dish", size=length(0.3, 3.0))
 def dish_antenna(b: ObjectBuilder, size: float) -> None:
     """A dish on a mount with two axes: radar, satellite, searchlight."""
-    b.part("base", b.cone(0.5 * size, 0.3 * size, (0, 0, 0), (0, 0, 0.5 * size)), material="metal")
+    b.part("base", b.cone(0.5 * size, 0.3 * size, 0, 0.5 * size), look="metal")
     g = b.gap(0.05 * size)
     b.part(
         "yoke",
-        b.cylinder(0.3 * size, (0, 0, 0.5 * size + g), (0, 0, 0.6 * size)),
+        b.cylinder(0.3 * size, 0.5 * size + g, 0.6 * size),
         [
-            box(
-                (s * 0.2 * size - 0.03 * size, -0.08 * size, 0.58 * size),
-                (s * 0.2 * size + 0.03 * size, 0.08 * size, 1.32 * size),
-            )
+            slab((s * 0.2 * size - 0.03 * size, s * 0.2 * size + 0.03 * size), 0.08 * size, (0.58 * size, 1.32 * size))
             for s in (-1, 1)
         ],
-        material="metal",
+        look="metal",
     )
     b.spin("yoke", parent="base", axis=Z, pivot=(0, 0, 0.5 * size))
     c = vector(0, 0, 1.25 * size)
@@ -858,18 +845,18 @@ def lighthouse_lamp(b: ObjectBuilder, size: float) -> None:
     b.part(
         "tower",
         b.pick(
-            b.cone(0.5 * size, 0.35 * size, (0, 0, 0), (0, 0, size)),
-            box((-0.4 * size, -0.4 * size, 0), (0.4 * size, 0.4 * size, size)),
-            b.cylinder(0.4 * size, (0, 0, 0), (0, 0, size)),
+            b.cone(0.5 * size, 0.35 * size, 0, size),
+            slab(0.4 * size, 0.4 * size, (0, size)),
+            b.cylinder(0.4 * size, 0, size),
         ),
     )
     g = b.gap(0.05 * size)
     shape = b.pick(
-        b.cylinder(0.35 * size, (0, 0, size + g), (0, 0, 1.6 * size)),
-        box((-0.5 * size, -0.1 * size, size + g), (0.5 * size, 0.1 * size, 1.3 * size)),
-        b.cone(0.35 * size, 0.2 * size, (0, 0, size + g), (0, 0, 1.5 * size)),
+        b.cylinder(0.35 * size, size + g, 1.6 * size),
+        slab(0.5 * size, 0.1 * size, (size + g, 1.3 * size)),
+        b.cone(0.35 * size, 0.2 * size, size + g, 1.5 * size),
     )
-    b.part("lamp", shape, b.cylinder(0.15 * size, (0, 0, size + g), (0, 0, 1.2 * size)))
+    b.part("lamp", shape, b.cylinder(0.15 * size, size + g, 1.2 * size))
     if b.maybe():
         b.part("lamp", b.cylinder(0.08 * size, (0, 0, 1.15 * size), (0, -0.4 * size, 1.15 * size)))
     b.spin("lamp", parent="tower", axis=Z, pivot=(0, 0, size))
@@ -882,16 +869,14 @@ def movie_camera(b: ObjectBuilder, size: float) -> None:
         "body",
         box(p(-0.05, -0.1, 0), p(0.05, 0.1, 0.16)),
         box(p(-0.02, -0.02, -0.1), p(0.02, 0.03, 0.01)),
-        material="metal",
-        color="black",
+        look="black metal",
     )
     b.cut("body", box(p(0, -0.08, 0.02), p(0.1, 0.08, 0.14)))
     b.part(
         "lens",
         b.cylinder(0.03 * size, p(0, -0.101, 0.11), p(0, -0.16, 0.11)),
         b.cylinder(0.034 * size, p(0, -0.13, 0.11), p(0, -0.15, 0.11)),
-        material="metal",
-        color="grey",
+        look="grey metal",
     )
     b.spin("lens", parent="body", axis=-Y, pivot=p(0, -0.1, 0.11))
     leaf(

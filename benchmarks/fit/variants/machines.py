@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.generate.library.kind import kind, length
 from kinematify.generate.library.mechanisms import arm, bail, case, knob, plunger, rotor
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, scaled, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, scaled, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -61,7 +61,7 @@ def toolbox(b: ObjectBuilder, width: float, depth: float, height: float) -> None
         b.part(
             f"latch_{k}",
             box((x - 0.015, -depth / 2 - 0.008 - g, height - 0.03), (x + 0.015, -depth / 2 - g, height + 0.02)),
-            material="steel",
+            look="steel",
         )
         b.hinge(
             f"latch_{k}",
@@ -78,19 +78,19 @@ def bench_vice(b: ObjectBuilder, width: float, length: float) -> None:
     """A jaw that slides, a screw with a tommy bar."""
     b.part(
         "body",
-        box((-width / 2, 0, 0), (width / 2, 0.7 * length, 0.06)),
-        box((-width / 2, 0, 0), (width / 2, 0.12 * length, 0.14)),
-        box((-0.3 * width, 0.1 * length, 0.05), (0.3 * width, 0.7 * length, 0.1)),
-        material="steel",
+        slab(width / 2, (0, 0.7 * length), (0, 0.06)),
+        slab(width / 2, (0, 0.12 * length), (0, 0.14)),
+        slab(0.3 * width, (0.1 * length, 0.7 * length), (0.05, 0.1)),
+        look="steel",
     )
     g = b.gap(0.03) + 0.0004
     y = -b.draw(0.05, 0.3) * length
-    b.bore("body", box((-0.16 * width - g, -0.1, 0.06 - g), (0.16 * width + g, length, 0.09 + g)))
+    b.bore("body", slab(0.16 * width + g, (-0.1, length), (0.06 - g, 0.09 + g)))
     b.part(
         "jaw",
-        box((-width / 2, y - 0.12 * length, 0.03), (width / 2, y, 0.14)),
-        box((-0.16 * width, y - 0.01, 0.06), (0.16 * width, 0.5 * length if b.style.has_bore else -g, 0.09)),
-        material="steel",
+        slab(width / 2, (y - 0.12 * length, y), (0.03, 0.14)),
+        slab(0.16 * width, (y - 0.01, 0.5 * length if b.style.has_bore else -g), (0.06, 0.09)),
+        look="steel",
     )
     b.slide("jaw", parent="body", axis=-Y, upper=0.3 * length, lower=y + g, ajar=False)
     at = vector(0, y - 0.12 * length, 0.075)
@@ -98,7 +98,7 @@ def bench_vice(b: ObjectBuilder, width: float, length: float) -> None:
         "screw",
         b.cylinder(0.014, at - g * Y, at - 0.05 * Y),
         b.cylinder(0.005, at + vector(-0.07, -0.04, 0), at + vector(0.07, -0.04, 0)),
-        material="steel",
+        look="steel",
     )
     b.spin("screw", parent="jaw", axis=-Y, pivot=at)
 
@@ -108,31 +108,31 @@ def parametric_drill_press(b: ObjectBuilder, height: float) -> None:
     """A table that slides on the column, a quill, a star handle, a chuck."""
     b.part(
         "stand",
-        box((-0.15, -0.25, 0), (0.15, 0.15, 0.04)),
+        slab(0.15, (-0.25, 0.15), (0, 0.04)),
         b.cylinder(0.035, (0, 0.08, 0.03), (0, 0.08, height)),
-        box((-0.09, -0.22, height - 0.2), (0.09, 0.14, height)),
-        material="steel",
+        slab(0.09, (-0.22, 0.14), (height - 0.2, height)),
+        look="steel",
     )
     g = b.gap(0.03) + 0.0004
     z = b.draw(0.25, 0.45) * height
     b.part(
         "table",
-        box((-0.13, -0.24, z), (0.13, 0.02, z + 0.025)),
+        slab(0.13, (-0.24, 0.02), (z, z + 0.025)),
         b.tube(0.055, 0.036 + g if b.style.has_bore else 0.01, (0, 0.08, z - 0.04), (0, 0.08, z + 0.06)),
-        box((-0.04, -0.1, z - 0.02), (0.04, 0.035, z + 0.01)),
-        material="steel",
+        slab(0.04, (-0.1, 0.035), (z - 0.02, z + 0.01)),
+        look="steel",
     )
     b.bore("table", b.cylinder(0.036 + 1.5 * g, (0, 0.08, 0), (0, 0.08, height)))
     b.slide("table", parent="stand", axis=Z, upper=0.15 * height, lower=-0.1 * height, ajar=False)
     q = vector(0, -0.14, height - 0.2)
-    b.part("quill", b.cylinder(0.03, q - 0.06 * Z, q + (0.1 * Z if b.style.has_bore else -g * Z)), material="steel")
+    b.part("quill", b.cylinder(0.03, q - 0.06 * Z, q + (0.1 * Z if b.style.has_bore else -g * Z)), look="steel")
     b.bore("stand", b.cylinder(0.03 + 1.5 * g, q - Z, q + 0.12 * Z))
     b.slide("quill", parent="stand", axis=-Z, upper=0.03 if not b.style.has_bore else 0.08, ajar=False)
     b.part(
         "chuck",
         b.cone(0.014, 0.022, q - 0.11 * Z, q - (0.06 + g) * Z),
         b.cylinder(0.004, q - 0.18 * Z, q - 0.1 * Z),
-        material="steel",
+        look="steel",
     )
     b.spin("chuck", parent="quill", axis=Z, pivot=q - 0.06 * Z)
     at = vector(0.09, -0.08, height - 0.12)
@@ -143,7 +143,7 @@ def parametric_drill_press(b: ObjectBuilder, height: float) -> None:
             b.cylinder(0.007, at + 0.025 * X, at + 0.04 * X + 0.16 * vector(0.2, cos(a), sin(a)))
             for a in np.arange(3) * 2.1
         ],
-        material="steel",
+        look="steel",
     )
     b.hinge("feed", parent="stand", axis=X, pivot=at, upper=3.0, lower=-0.2, ajar=False)
 
@@ -153,10 +153,10 @@ def lathe_machine(b: ObjectBuilder, length: float) -> None:
     """A spindle, a carriage on a bed, a tailstock, handwheels."""
     b.part(
         "bed",
-        box((-length / 2, -0.14, 0), (length / 2, 0.14, 0.1)),
-        box((-length / 2, -0.02, 0.05), (length / 2, 0.02, 0.14)),
-        box((-length / 2, -0.14, 0.08), (-length / 2 + 0.3, 0.14, 0.4)),
-        material="steel",
+        slab(length / 2, 0.14, (0, 0.1)),
+        slab(length / 2, 0.02, (0.05, 0.14)),
+        slab((-length / 2, -length / 2 + 0.3), 0.14, (0.08, 0.4)),
+        look="steel",
     )
     g = b.gap(0.03) + 0.0004
     at = vector(-length / 2 + 0.3, 0, 0.28)
@@ -164,18 +164,18 @@ def lathe_machine(b: ObjectBuilder, length: float) -> None:
         "chuck",
         b.cylinder(0.07, at + g * X, at + 0.06 * X),
         [block(at + 0.07 * X + 0.045 * vector(0, cos(a), sin(a)), (0.04, 0.02, 0.02)) for a in np.arange(3) * 2.1],
-        material="steel",
+        look="steel",
     )
     b.spin("chuck", parent="bed", axis=X, pivot=at)
     x_carriage = b.draw(0, 0.08) * length
     for name, x, h in (("carriage", x_carriage, 0.24), ("tailstock", 0.4 * length, 0.31)):
         b.part(
             name,
-            box((x - 0.07, -0.13, 0.1 + g), (x + 0.07, 0.13, 0.18)),
-            box((x - 0.04, -0.04, 0.15), (x + 0.04, 0.04, h)),
-            material="steel",
+            slab((x - 0.07, x + 0.07), 0.13, (0.1 + g, 0.18)),
+            slab((x - 0.04, x + 0.04), 0.04, (0.15, h)),
+            look="steel",
         )
-        b.bore(name, box((x - 1, -0.02 - g, 0), (x + 1, 0.02 + g, 0.14 + g)))
+        b.bore(name, slab((x - 1, x + 1), 0.02 + g, (0, 0.14 + g)))
         b.slide(
             name,
             parent="bed",
@@ -192,19 +192,15 @@ def hand_pump(b: ObjectBuilder, height: float) -> None:
     """A well pump: a long lever on a post and a spout; the rod goes up and down."""
     b.part(
         "post",
-        b.cylinder(0.09, (0, 0, 0), (0, 0, 0.04)),
-        b.cylinder(0.055, (0, 0, 0.03), (0, 0, height)),
+        b.cylinder(0.09, 0, 0.04),
+        b.cylinder(0.055, 0.03, height),
         b.rod(0.025, (0, 0, 0.75 * height), (0.2, 0, 0.72 * height)),
         beam(0.03, 0.03, (-0.04, 0, height - 0.05), (-0.12, 0, height + 0.05), Y),
-        material="steel",
+        look="steel",
     )
     g = b.gap(0.02) + 0.0005
-    b.bore("post", b.cylinder(0.01 + 1.5 * g, (0, 0, 0.4), (0, 0, height + 1)))
-    b.part(
-        "rod",
-        b.cylinder(0.01, (0, 0, 0.5 * height if b.style.has_bore else height + g), (0, 0, height + 0.12)),
-        material="steel",
-    )
+    b.bore("post", b.cylinder(0.01 + 1.5 * g, 0.4, height + 1))
+    b.part("rod", b.cylinder(0.01, 0.5 * height if b.style.has_bore else height + g, height + 0.12), look="steel")
     b.slide("rod", parent="post", axis=Z, upper=0.08, ajar=False)
     arm(
         b,
@@ -222,12 +218,12 @@ def hand_pump(b: ObjectBuilder, height: float) -> None:
 @kind("parametric robot arm", like="serial_arm", size=length(0.3, 1.2))
 def robot_arm(b: ObjectBuilder, size: float) -> None:
     """Four to six links of blocks and cylinders; turns about z, then y, y, x, y."""
-    b.part("base", b.cylinder(0.16 * size, (0, 0, 0), (0, 0, 0.12 * size)), material="steel")
+    b.part("base", b.cylinder(0.16 * size, 0, 0.12 * size), look="steel")
     g = b.gap(0.1 * size)
     b.part(
         "shoulder",
-        b.cylinder(0.13 * size, (0, 0, 0.12 * size + g), (0, 0, 0.25 * size)),
-        box((-0.06 * size, -0.05 * size, 0.2 * size), (0.06 * size, 0.05 * size, 0.36 * size)),
+        b.cylinder(0.13 * size, 0.12 * size + g, 0.25 * size),
+        slab(0.06 * size, 0.05 * size, (0.2 * size, 0.36 * size)),
     )
     b.hinge("shoulder", parent="base", axis=Z, pivot=(0, 0, 0.12 * size), upper=2.9, lower=-2.9, ajar=False)
     step = 0.1 * size + b.gap(0.1 * size) if b.style.has_bore else 0
@@ -275,7 +271,7 @@ def parametric_syringe(b: ObjectBuilder, radius: float, length: float) -> None:
         b.cylinder(radius, 0 * up, length * up),
         b.cylinder(0.3 * radius, -0.15 * length * up, 0.01 * up),
         beam(4 * radius, 1.5 * radius, length * up - 0.002 * up, length * up, Y),
-        material="glass",
+        look="glass",
     )
     plunger(
         b,
@@ -316,7 +312,7 @@ def cable_reel(b: ObjectBuilder, radius: float) -> None:
                 c + s * (w / 2 + 0.12 * radius) * X,
                 X,
             ),
-            material="steel",
+            look="steel",
         )
     b.part(
         "stand",
@@ -339,7 +335,7 @@ def cable_reel(b: ObjectBuilder, radius: float) -> None:
         b.cylinder(0.5 * radius, c - w / 2 * X, c + w / 2 * X),
         [b.cylinder(radius, c + s * w / 2 * X, c + s * (w / 2 - 0.05 * radius) * X) for s in (-1, 1)],
         b.cylinder(0.03 * radius, c - (w / 2 + 0.2 * radius) * X, c + (w / 2 + 0.2 * radius) * X),
-        material="wood",
+        look="wood",
     )
     if b.maybe():
         e = c + (w / 2 + 0.2 * radius) * X
@@ -362,7 +358,7 @@ def parametric_microscope(b: ObjectBuilder, size: float) -> None:
         box(p(-0.03, 0.05, 0.02), p(0.03, 0.09, 0.3)),
         box(p(-0.03, -0.04, 0.27), p(0.03, 0.09, 0.31)),
         b.cylinder(0.02 * size, p(0, -0.02, 0.3), p(0, -0.09, 0.4)),
-        material="metal",
+        look="metal",
     )
     g = b.gap(0.01) + 0.0003
     b.part(
@@ -379,7 +375,7 @@ def parametric_microscope(b: ObjectBuilder, size: float) -> None:
             b.cylinder(0.006 * size, at - 0.01 * size * Z + 0.015 * size * v, at - 0.05 * size * Z + 0.018 * size * v)
             for v in (X, -0.5 * X + 0.87 * Y, -0.5 * X - 0.87 * Y)
         ],
-        material="metal",
+        look="metal",
     )
     b.spin("turret", parent="stand", axis=Z, pivot=at)
     for s in (-1, 1):
@@ -397,19 +393,10 @@ def parametric_microscope(b: ObjectBuilder, size: float) -> None:
 @kind("parametric balance scale", like="balance_scale", size=length(0.2, 0.5))
 def parametric_balance_scale(b: ObjectBuilder, size: float) -> None:
     """A beam that tilts on a post, two pans that hang."""
-    b.part(
-        "stand",
-        b.cylinder(0.25 * size, (0, 0, 0), (0, 0, 0.04 * size)),
-        b.cone(0.03 * size, 0.004 * size, (0, 0, 0), (0, 0, size)),
-        material="metal",
-    )
+    b.part("stand", b.cylinder(0.25 * size, 0, 0.04 * size), b.cone(0.03 * size, 0.004 * size, 0, size), look="metal")
     g = b.gap(0.03 * size)
     z = size + g + 0.02 * size
-    b.part(
-        "beam",
-        box((-0.5 * size, -0.02 * size, z - 0.02 * size), (0.5 * size, 0.02 * size, z + 0.02 * size)),
-        material="metal",
-    )
+    b.part("beam", slab(0.5 * size, 0.02 * size, (z - 0.02 * size, z + 0.02 * size)), look="metal")
     b.hinge("beam", parent="stand", axis=Y, pivot=(0, 0, b.pick(z, size)), upper=0.15, lower=-0.15, ajar=False)
     for i, s in enumerate((-1, 1)):
         x = s * 0.47 * size
@@ -427,7 +414,7 @@ def desk_fan(b: ObjectBuilder, radius: float, height: float) -> None:
     """A base, a neck that tilts, a guard with a rotor."""
     b.part(
         "base",
-        b.cylinder(0.8 * radius, (0, 0, 0), (0, 0, 0.03)),
+        b.cylinder(0.8 * radius, 0, 0.03),
         b.cylinder(0.12 * radius, (0, 0.1 * radius, 0.02), (0, 0.1 * radius, height)),
     )
     g = b.gap(0.02)
@@ -465,9 +452,9 @@ def reading_lamp(b: ObjectBuilder, size: float) -> None:
     """Two arms and a shade on a foot."""
     b.part(
         "foot",
-        b.cylinder(0.3 * size, (0, 0, 0), (0, 0, 0.06 * size)),
-        b.cylinder(0.03 * size if b.style.has_bore else 0.05 * size, (0, 0, 0.05 * size), (0, 0, 0.2 * size)),
-        material="metal",
+        b.cylinder(0.3 * size, 0, 0.06 * size),
+        b.cylinder(0.03 * size if b.style.has_bore else 0.05 * size, 0.05 * size, 0.2 * size),
+        look="metal",
     )
     step = 0.06 * size + b.gap(0.06 * size) if b.style.has_bore else 0
     a = vector(0, 0, 0.18 * size)
@@ -508,23 +495,21 @@ def pallet_truck(b: ObjectBuilder, length: float) -> None:
     b.part(
         "truck",
         [box((0, s * 0.2 - 0.08, 0.08), (length, s * 0.2 + 0.08, 0.13)) for s in (-1, 1)],
-        box((-0.16, -0.28, 0.2), (0.02, 0.28, 0.45)),
-        [box((-0.02, s * 0.2 - 0.08, 0.08), (0.02, s * 0.2 + 0.08, 0.3)) for s in (-1, 1)],
-        material="steel",
+        slab((-0.16, 0.02), 0.28, (0.2, 0.45)),
+        [slab(0.02, (s * 0.2 - 0.08, s * 0.2 + 0.08), (0.08, 0.3)) for s in (-1, 1)],
+        look="steel",
     )
     g = b.gap(0.05) + 0.0005
     b.part(
         "drawbar_head",
         b.cylinder(0.05, (-0.1, 0, 0.2 - g), (-0.1, 0, 0.14)),
-        box((-0.22, -0.05, 0.06), (-0.04, 0.05, 0.15)),
-        material="steel",
+        slab((-0.22, -0.04), 0.05, (0.06, 0.15)),
+        look="steel",
     )
     b.hinge("drawbar_head", parent="truck", axis=Z, pivot=(-0.1, 0, 0.2), upper=0.8, lower=-0.8, ajar=False)
     for s in (-1, 1):
         b.part(
-            f"wheel_{int(s > 0)}",
-            b.cylinder(r, (-0.1, s * (0.05 + g), r), (-0.1, s * (0.11 + g), r)),
-            material="rubber",
+            f"wheel_{int(s > 0)}", b.cylinder(r, (-0.1, s * (0.05 + g), r), (-0.1, s * (0.11 + g), r)), look="rubber"
         )
         b.spin(f"wheel_{int(s > 0)}", parent="drawbar_head", axis=s * Y, pivot=(-0.1, 0, r))
     x = -0.221 - (0.022 if b.style.has_bore else 0) - g
@@ -535,7 +520,7 @@ def pallet_truck(b: ObjectBuilder, length: float) -> None:
         b.cylinder(0.008, (x, -0.034, 0.12), (x, 0.034, 0.12)),
         beam(0.04, 0.04, (x, 0, 0.12), (-0.4, 0, 1.1), Y),
         b.cylinder(0.015, (-0.4, -0.15, 1.1), (-0.4, 0.15, 1.1)),
-        material="steel",
+        look="steel",
     )
     b.hinge(
         "drawbar",
@@ -553,21 +538,21 @@ def parametric_door_bolt(b: ObjectBuilder, length: float) -> None:
     k = 0.06 * length
     b.part(
         "plate",
-        box((0, 0, -2.5 * k), (length, k * 0.5, 2.5 * k)),
-        box((length + 2 * k, 0, -2.5 * k), (length + 4 * k, k * 0.5, 2.5 * k)),
-        box((length - 0.01 * length, 0.2 * k, -0.4 * k), (length + 2.1 * k, 0.5 * k, 0.4 * k)),
-        material="steel",
+        slab((0, length), (0, k * 0.5), 2.5 * k),
+        slab((length + 2 * k, length + 4 * k), (0, k * 0.5), 2.5 * k),
+        slab((length - 0.01 * length, length + 2.1 * k), (0.2 * k, 0.5 * k), 0.4 * k),
+        look="steel",
     )
     g = b.gap(0.2 * k) + 0.0001
     y = -(k + g)
     for x in (0.25 * length, 0.8 * length):
-        b.part("plate", box((x - k, y - 1.6 * k, -1.8 * k), (x + k, 0.1 * k, 1.8 * k)))
+        b.part("plate", slab((x - k, x + k), (y - 1.6 * k, 0.1 * k), 1.8 * k))
     b.bore("plate", b.cylinder(k + 1.5 * g, (-length, y, 0), (2 * length, y, 0)))
     b.part(
         "bolt",
         b.cylinder(k, (0.02 * length, y, 0), (length, y, 0)),
         b.cylinder(0.6 * k, (0.5 * length, y, 0), (0.5 * length, y - 3 * k, 0)),
-        material="steel",
+        look="steel",
     )
     b.slide("bolt", parent="plate", axis=X, upper=3 * k)
 
@@ -579,11 +564,8 @@ def steering_rack(b: ObjectBuilder, length: float) -> None:
         "housing",
         b.cylinder(0.04 * L, (-0.3 * L, 0, 0), (0.3 * L, 0, 0)),
         b.cylinder(0.035 * L, (0, -0.03 * L, 0.03 * L), (0, -0.03 * L, 0.12 * L)),
-        [
-            box((s * 0.25 * L - 0.02 * L, -0.06 * L, -0.06 * L), (s * 0.25 * L + 0.02 * L, 0.06 * L, -0.03 * L))
-            for s in (-1, 1)
-        ],
-        material="metal",
+        [slab((s * 0.25 * L - 0.02 * L, s * 0.25 * L + 0.02 * L), 0.06 * L, (-0.06 * L, -0.03 * L)) for s in (-1, 1)],
+        look="metal",
     )
     b.bore("housing", b.cylinder(0.0215 * L, (-L, 0, 0), (L, 0, 0)))
     b.bore("housing", b.cylinder(0.0135 * L, (0, -0.03 * L, 0.045 * L), (0, -0.03 * L, L)))
@@ -591,14 +573,14 @@ def steering_rack(b: ObjectBuilder, length: float) -> None:
         "rack",
         b.cylinder(0.02 * L, (-0.42 * L, 0, 0), (0.42 * L, 0, 0)),
         [ball(0.03 * L, (s * 0.43 * L, 0, 0)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
     b.slide("rack", parent="housing", axis=X, lower=-0.08 * L, upper=0.08 * L)
     b.part(
         "pinion",
         b.cylinder(0.012 * L, (0, -0.03 * L, 0.055 * L), (0, -0.03 * L, 0.3 * L)),
         b.cylinder(0.03 * L, (0, -0.03 * L, 0.28 * L), (0, -0.03 * L, 0.3 * L)),
-        material="steel",
+        look="steel",
     )
     b.hinge("pinion", parent="housing", axis=Z, pivot=[0, -0.03 * L, 0], lower=-6.28, upper=6.28)
     b.follow("rack", leader="pinion", multiplier=0.0127 * L)
@@ -609,17 +591,16 @@ def shock_absorber(b: ObjectBuilder, length: float) -> None:
     L = length
     b.part(
         "cylinder",
-        b.cylinder(0.07 * L, (0, 0, 0.06 * L), (0, 0, 0.6 * L)),
+        b.cylinder(0.07 * L, 0.06 * L, 0.6 * L),
         b.cylinder(0.05 * L, (-0.04 * L, 0, 0.03 * L), (0.04 * L, 0, 0.03 * L)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.bore("cylinder", b.cylinder(0.027 * L, (0, 0, 0.12 * L), (0, 0, L)))
+    b.bore("cylinder", b.cylinder(0.027 * L, 0.12 * L, L))
     b.part(
         "rod",
-        b.cylinder(0.025 * L, (0, 0, 0.2 * L), (0, 0, 0.97 * L)),
+        b.cylinder(0.025 * L, 0.2 * L, 0.97 * L),
         b.cylinder(0.05 * L, (-0.04 * L, 0, L), (0.04 * L, 0, L)),
-        b.cylinder(0.08 * L, (0, 0, 0.9 * L), (0, 0, 0.92 * L)),
-        material="chrome",
+        b.cylinder(0.08 * L, 0.9 * L, 0.92 * L),
+        look="chrome",
     )
     b.slide("rod", parent="cylinder", axis=Z, lower=-0.07 * L, upper=0.22 * L)

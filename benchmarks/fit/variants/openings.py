@@ -10,11 +10,19 @@ from kinematify.generate.kinds.openings import surround
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import knob, lever
-from kinematify.generate.library.panels import grip, leaf, pane, seam
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, vector
+from kinematify.generate.library.panels import filled, grip, leaf, seam
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.solids import Point
+
+
+def pane(d: ObjectBuilder, name: str, lower: Point, upper: Point) -> None:
+    """A plate of wood between two corners that is a plain slab, has a panel let in, or is a frame about a pane."""
+    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
+    d.part(name, look="wood")
+    filled(d, name, low, high, -Y, d.pick("plain", "panel", "pane", "pane"))
 
 
 @kind(
@@ -77,24 +85,13 @@ def slab_garage_door(b: ObjectBuilder, width: float, height: float, thickness: f
     else:
         play = max(seam(b, 1, thickness), 0.003 if kind == "middle" else -1)
         if kind == "slides":
-            b.part(
-                "door",
-                box((-width / 2 - 0.05, -thickness - play, 0), (width / 2 + 0.05, -play, height + 0.05)),
-                material="metal",
-            )
+            b.part("door", slab(width / 2 + 0.05, (-thickness - play, -play), (0, height + 0.05)), look="metal")
         else:
-            b.part(
-                "door",
-                box((-width / 2 + play, -thickness, 0.01), (width / 2 - play, 0, height - 0.15)),
-                material="metal",
-            )
+            b.part("door", slab(width / 2 - play, (-thickness, 0), (0.01, height - 0.15)), look="metal")
         for z in spread(b.count(1, 5), 0, height - 0.15):
             b.part(
                 "door",
-                box(
-                    (-0.45 * width, -thickness - play - 0.015, z - 0.04),
-                    (0.45 * width, -thickness - play + 0.005, z + 0.04),
-                ),
+                slab(0.45 * width, (-thickness - play - 0.015, -thickness - play + 0.005), (z - 0.04, z + 0.04)),
             )
         if kind == "slides":
             b.slide("door", parent="wall", axis=Z, upper=b.draw(0.7, 0.95) * height)
@@ -120,16 +117,16 @@ def slab_gate(
     """One or two leaves of boards between posts or in a fence."""
     for s in (-1, 1):
         a = s * number * width / 2
-        b.part("posts", box((a, -post / 2, 0), (a + s * post, post / 2, height * b.draw(1, 1.15))), material="wood")
+        b.part("posts", slab((a, a + s * post), post / 2, (0, height * b.draw(1, 1.15))), look="wood")
         if b.maybe(0.4):
             b.part(
                 "posts",
                 [
-                    box((a + 0.5 * s * post, -0.02, z), (a + s * b.draw(0.8, 1.5), 0.02, z + 0.08))
+                    slab((a + 0.5 * s * post, a + s * b.draw(0.8, 1.5)), 0.02, (z, z + 0.08))
                     for z in (0.2 * height, 0.75 * height)
                 ],
             )
-    b.part("posts", box((-number * width / 2 - post, -post / 2, -0.1), (number * width / 2 + post, post / 2, 0)))
+    b.part("posts", slab(number * width / 2 + post, post / 2, (-0.1, 0)))
     y = b.pick(-post / 2, -thickness / 2)
     play = seam(b, width, thickness)
     for k in range(number):
@@ -140,7 +137,7 @@ def slab_gate(
         b_ = b_ - max(play, 0)
         name = f"leaf_{k}"
         if b.maybe():
-            b.part(name, box((a, y, foot), (b_, y + thickness, height)), material="wood")
+            b.part(name, box((a, y, foot), (b_, y + thickness, height)), look="wood")
         else:
             boards = b.count(4, 9)
             wide = (b_ - a) / boards * b.draw(0.5, 0.95)
@@ -175,11 +172,11 @@ def slab_gate(
 def house_shutters(b: ObjectBuilder, width: float, height: float, thickness: float) -> None:
     """Two leaves before a wall beside a window, shut or folded back."""
     for x in (-0.5 * width - 0.6, 0.5 * width):
-        b.part("wall", box((x, 0, -0.4), (x + 0.6, 0.25, height + 0.3)), material="wood")
+        b.part("wall", box((x, 0, -0.4), (x + 0.6, 0.25, height + 0.3)), look="wood")
     for z in (-0.4, height):
-        b.part("wall", box((-width / 2 - 0.6, 0, z), (width / 2 + 0.6, 0.25, z + (0.4 if z < 0 else 0.3))))
+        b.part("wall", slab(width / 2 + 0.6, (0, 0.25), (z, z + (0.4 if z < 0 else 0.3))))
     if b.maybe():
-        b.part("wall", box((-width / 2, 0.12, 0), (width / 2, 0.14, height)))
+        b.part("wall", slab(width / 2, (0.12, 0.14), (0, height)))
     for k, side in enumerate((-X, X)):
         a, b_ = ((-width / 2, 0), (0, width / 2))[k]
         if b.maybe(0.7):
@@ -369,7 +366,7 @@ def sliding_room_door(b: ObjectBuilder, width: float, height: float, thickness: 
             b.part(
                 "wall",
                 box((s * width * number / 2, 0, 0), (s * (half + width), b.draw(0.08, 0.2), height + 0.3)),
-                material="wood",
+                look="wood",
             )
         else:
             b.part(

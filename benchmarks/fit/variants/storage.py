@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchmarks.fit.variants.openings import pane
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import case, caster, legs, wheel
-from kinematify.generate.library.panels import carcass, drawer, grip, leaf, pane, seam
-from kinematify.generate.procedural.solids import X, Y, Z, box, prism
+from kinematify.generate.library.panels import carcass, drawer, grip, leaf, seam
+from kinematify.generate.procedural.solids import X, Y, Z, box, prism, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -46,7 +47,7 @@ def slab_cabinet(b: ObjectBuilder, width: float, depth: float, height: float, wa
     if foot:
         legs(b, "body", lower=(-width / 2, 0, 0), upper=(width / 2, depth, foot + 0.002), thick=b.draw(0.02, 0.05))
     if b.maybe(0.3):
-        b.part("body", box((-width / 2 - 0.02, -0.03 - thick, height), (width / 2 + 0.02, depth, height + 0.03)))
+        b.part("body", slab(width / 2 + 0.02, (-0.03 - thick, depth), (height, height + 0.03)))
     sides = [b.pick(X, -X)] if columns == 1 else [-X, X, b.pick(X, -X)]
     bounds = [foot, *levels, height]
     for i, (a, b_) in enumerate(pairwise(bounds)):
@@ -100,7 +101,7 @@ def slab_wardrobe(
     z0, z1 = (wall + max(play, 0), height - wall - max(play, 0)) if inside or b.maybe() else (0, height)
     if inside:
         for a, b_ in ((0, wall), (height - wall, height)):
-            b.part("body", box((-wide / 2, -3 * thick - 0.01, a), (wide / 2, 0.01, b_)))
+            b.part("body", slab(wide / 2, (-3 * thick - 0.01, 0.01), (a, b_)))
         for s in (-1, 1):
             b.part("body", box((s * wide / 2, -3 * thick - 0.01, 0), (s * (wide / 2 - wall), 0.01, height)))
     for k in range(number):
@@ -109,7 +110,7 @@ def slab_wardrobe(
         a = max(a, -wide / 2 + wall + 0.001)
         b_ = min(b_, wide / 2 - wall - 0.001)
         y = -thick - play - k % 2 * (thick + max(play, 0))
-        pane(b, f"leaf_{k}", lower=(a, y, z0), upper=(b_, y + thick, z1))
+        pane(b, f"leaf_{k}", (a, y, z0), (b_, y + thick, z1))
         s = 1 if k < number - 1 else -1
         if b.maybe(0.6) and k % 2:
             grip(
@@ -256,22 +257,17 @@ def lidded_box(b: ObjectBuilder, width: float, depth: float, height: float, kind
     """A box with one lid, two flaps or four, thin or thick, shut or half open; or a lid that is lifted off."""
     wall = b.draw(0.01, 0.06) * min(width, depth, height)
     if b.style.hollow:
-        b.part("body", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, height)), material="wood")
-        b.cut(
-            "body", box((-width / 2 + wall, -depth / 2 + wall, wall), (width / 2 - wall, depth / 2 - wall, height + 1))
-        )
+        b.part("body", slab(width / 2, depth / 2, (0, height)), look="wood")
+        b.cut("body", slab(width / 2 - wall, depth / 2 - wall, (wall, height + 1)))
     else:
-        b.part("body", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, height)), material="wood")
+        b.part("body", slab(width / 2, depth / 2, (0, height)), look="wood")
     thick = b.pick(wall, 2 * wall, b.draw(0.1, 0.4) * height)
     if kind == "off":
         play = seam(b, depth, thick)
         over = b.draw(0, 0.02)
         b.part(
             "lid",
-            box(
-                (-width / 2 - over, -depth / 2 - over, height + play),
-                (width / 2 + over, depth / 2 + over, height + play + thick),
-            ),
+            slab(width / 2 + over, depth / 2 + over, (height + play, height + play + thick)),
         )
         b.slide("lid", parent="body", axis=Z, upper=b.draw(0.3, 1) * height)
     else:
@@ -329,11 +325,7 @@ def lidded_box(b: ObjectBuilder, width: float, depth: float, height: float, kind
 def plain_bin(b: ObjectBuilder, width: float, depth: float, height: float, round_one: bool, thick: float) -> None:
     """A bin whose lid is hinged behind, swings about its middle, or is two halves; at times wheels, a pedal."""
     r = min(width, depth) / 2
-    body = (
-        b.cone(0.85 * r, r, (0, 0, 0), (0, 0, height))
-        if round_one
-        else box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, height))
-    )
+    body = b.cone(0.85 * r, r, 0, height) if round_one else slab(width / 2, depth / 2, (0, height))
     b.part("bin", body)
     if round_one:
         width = 2 * r
@@ -341,15 +333,15 @@ def plain_bin(b: ObjectBuilder, width: float, depth: float, height: float, round
     if b.style.hollow:
         b.cut(
             "bin",
-            b.cone(0.75 * r, 0.92 * r, (0, 0, 0.02), (0, 0, height + 0.01))
+            b.cone(0.75 * r, 0.92 * r, 0.02, height + 0.01)
             if round_one
-            else box((-0.46 * width, -0.46 * depth, 0.02), (0.46 * width, 0.46 * depth, height + 1)),
+            else slab(0.46 * width, 0.46 * depth, (0.02, height + 1)),
         )
     play = seam(b, width, thick)
     kind = b.pick("behind", "behind", "swings", "halves") if not round_one else "behind"
     low = height + play
     if round_one:
-        b.part("lid", b.cylinder(r, (0, 0, low), (0, 0, low + thick)))
+        b.part("lid", b.cylinder(r, low, low + thick))
         b.hinge("lid", parent="bin", axis=-X, pivot=(0, r, low + (1 - b.style.line) * thick), upper=b.draw(1, 1.7))
     elif kind == "behind":
         leaf(
@@ -367,10 +359,7 @@ def plain_bin(b: ObjectBuilder, width: float, depth: float, height: float, round
     elif kind == "swings":
         b.part(
             "bin",
-            [
-                box((s * width / 2, -depth / 2, height), (s * 0.44 * width, depth / 2, height + 0.4 * depth))
-                for s in (-1, 1)
-            ],
+            [slab((s * width / 2, s * 0.44 * width), depth / 2, (height, height + 0.4 * depth)) for s in (-1, 1)],
         )
         g = max(seam(b, width, 0.01), 0.001)
         z = height + 0.36 * depth
@@ -420,7 +409,7 @@ def plain_bin(b: ObjectBuilder, width: float, depth: float, height: float, round
     elif b.maybe(0.4):
         deep = depth / 2 if not round_one else 0.85 * r
         g = b.gap(0.05)
-        b.part("pedal", box((-0.05, -deep - 0.08, 0.01), (0.05, -deep - g if b.style.has_bore else -0.9 * deep, 0.022)))
+        b.part("pedal", slab(0.05, (-deep - 0.08, -deep - g if b.style.has_bore else -0.9 * deep), (0.01, 0.022)))
         b.hinge(
             "pedal",
             parent="bin",
@@ -457,10 +446,10 @@ def plain_suitcase(
 ) -> None:
     """A case on end with two halves or one block, a handle that telescopes, a carry handle, and wheels below."""
     middle = b.draw(-0.1, 0.1) * depth if split else -depth / 2
-    b.part("body", box((-width / 2, middle, foot), (width / 2, depth / 2, foot + height)))
+    b.part("body", slab(width / 2, (middle, depth / 2), (foot, foot + height)))
     if split:
         play = seam(b, width, 0.01)
-        b.part("lid", box((-width / 2, -depth / 2, foot), (width / 2, middle - play, foot + height)))
+        b.part("lid", slab(width / 2, (-depth / 2, middle - play), (foot, foot + height)))
         side = b.pick(X, -X)
         b.hinge(
             "lid",
@@ -473,17 +462,11 @@ def plain_suitcase(
         if b.style.hollow:
             b.cut(
                 "body",
-                box(
-                    (-0.48 * width, middle - 1, foot + 0.02 * height),
-                    (0.48 * width, 0.46 * depth, foot + 0.98 * height),
-                ),
+                slab(0.48 * width, (middle - 1, 0.46 * depth), (foot + 0.02 * height, foot + 0.98 * height)),
             )
             b.cut(
                 "lid",
-                box(
-                    (-0.48 * width, -0.46 * depth, foot + 0.02 * height),
-                    (0.48 * width, middle + 1, foot + 0.98 * height),
-                ),
+                slab(0.48 * width, (-0.46 * depth, middle + 1), (foot + 0.02 * height, foot + 0.98 * height)),
             )
     play1 = b.gap(0.03)
     y = depth / 2 - 0.02
@@ -499,11 +482,11 @@ def plain_suitcase(
         b.part(
             "handle",
             box((s * x - radius, y - radius, low), (s * x + radius, y + radius, foot + height + top)),
-            material="metal",
+            look="metal",
         )
     b.part(
         "handle",
-        box((-x - radius, y - 0.014, foot + height + top), (x + radius, y + 0.014, foot + height + top + 0.025)),
+        slab(x + radius, (y - 0.014, y + 0.014), (foot + height + top, foot + height + top + 0.025)),
     )
     b.slide("handle", parent="body", axis=Z, upper=b.draw(0.5, 0.9) * (foot + height - low), ajar=b.maybe())
     for k, s in enumerate((-1, 1)) if b.maybe(0.7) else ():
@@ -523,17 +506,18 @@ def plain_suitcase(
         if not split:
             b.part(
                 "grip",
-                box((a, -0.012, z - half), (a + lift, 0.012, z - half + 0.012)),
-                box((a, -0.012, z + half - 0.012), (a + lift, 0.012, z + half)),
-                box((a + lift, -0.012, z - half), (a + 0.75 * lift, 0.012, z + half)),
+                slab((a, a + lift), 0.012, (z - half, z - half + 0.012)),
+                slab((a, a + lift), 0.012, (z + half - 0.012, z + half)),
+                slab((a + lift, a + 0.75 * lift), 0.012, (z - half, z + half)),
             )
             if b.style.has_bore:
                 b.part(
                     "body",
                     [
-                        box(
-                            (side * width / 2.01, -0.008, z + s * (half + 0.001)),
-                            (a + side * 0.006, 0.008, z + s * (half + 0.013)),
+                        slab(
+                            (side * width / 2.01, a + side * 0.006),
+                            0.008,
+                            (z + s * (half + 0.001), z + s * (half + 0.013)),
                         )
                         for s in (-1, 1)
                     ],
@@ -556,7 +540,7 @@ def wall_cupboard(b: ObjectBuilder, width: float, height: float, depth: float, r
     case(b, "unit", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), opening=-Y, wall=0.018)
     for k, z in enumerate(spread(rows, 0, height)):
         if rows == 2:
-            b.part("unit", box((-width / 2, 0, height / 2 - 0.009), (width / 2, depth, height / 2 + 0.009)))
+            b.part("unit", slab(width / 2, (0, depth), (height / 2 - 0.009, height / 2 + 0.009)))
         leaf(
             b,
             f"flap_{k}",

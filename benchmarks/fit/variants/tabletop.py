@@ -9,14 +9,42 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
-from kinematify.generate.library.mechanisms import button, knob, pinned
+from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import seam
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, slab, vector
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from typing import Any
 
+    from manifold3d import Manifold
+
     from kinematify.generate.library.builder import ObjectBuilder
+
+
+def pinned(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    arms: Sequence[Sequence[Manifold]],
+    r: float,
+    low: float,
+    high: float,
+    upper: float,
+    lower: float,
+) -> None:
+    """Two arms that cross at the origin, and a pin about z in both: of one of them, of its own, or not drawn."""
+    for arm_name, some in zip((parent, name), arms, strict=True):
+        d.part(arm_name, *some, look="steel")
+    pin = d.cylinder(r, low, high)
+    kind = d.pick("merged", "apart", "none")
+    if kind != "none":
+        d.bore(name, d.cylinder(r + 1.5 * d.gap(2 * r) + 1e-5, low - 1, high + 1))
+        if kind == "merged":
+            d.part(parent, pin)
+        else:
+            d.fix(d.part("pin", pin, look="steel"), parent)
+    d.hinge(name, parent, Z, (0, 0, 0), upper, lower, ajar=False)
 
 
 @kind(
@@ -91,7 +119,7 @@ def plain_pliers(
                 beam(wide, thick, middle, middle + jaw * along, Z),
                 beam(0.9 * wide, thick, middle, knee, Z),
                 beam(0.8 * wide, thick, knee, knee + 0.65 * grip * back, Z),
-                b.cylinder(0.8 * wide, (0, 0, z), (0, 0, z + thick)),
+                b.cylinder(0.8 * wide, z, z + thick),
             ],
         ]
     top = 2 * thick + max(play, 0)
@@ -189,13 +217,13 @@ def pump_bottle(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part(
         "bottle",
         b.pick(
-            b.cylinder(radius, (0, 0, 0), (0, 0, height)),
-            box((-radius, -0.6 * radius, 0), (radius, 0.6 * radius, height)),
+            b.cylinder(radius, 0, height),
+            slab(radius, 0.6 * radius, (0, height)),
             b.lathe(
                 [(0.001, 0), (radius, 0), (0.75 * radius, 0.5 * height), (radius, height), (0.001, height)], (0, 0, 0)
             ),
         ),
-        b.cylinder(neck, (0, 0, 0.5 * height), (0, 0, top)),
+        b.cylinder(neck, 0.5 * height, top),
     )
     play = seam(b, neck, 0.01)
     if b.maybe(0.5):
@@ -203,16 +231,14 @@ def pump_bottle(b: ObjectBuilder, radius: float, height: float) -> None:
         stem = b.draw(0.015, 0.04)
         b.bore(
             "bottle",
-            b.cylinder(
-                0.35 * neck + 1.5 * b.gap(neck) + 1e-05, (0, 0, max(0.01, 0.5 * height - stem)), (0, 0, top + 1)
-            ),
+            b.cylinder(0.35 * neck + 1.5 * b.gap(neck) + 1e-05, max(0.01, 0.5 * height - stem), top + 1),
         )
         b.part(
             "head",
-            b.cylinder(0.35 * neck, (0, 0, 0.5 * height if b.style.has_bore else top), (0, 0, z + stem)),
+            b.cylinder(0.35 * neck, 0.5 * height if b.style.has_bore else top, z + stem),
             b.pick(
-                b.cylinder(0.9 * neck, (0, 0, z + stem), (0, 0, z + stem + 0.012)),
-                box((-0.8 * neck, -neck, z + stem), (0.8 * neck, neck, z + stem + 0.012)),
+                b.cylinder(0.9 * neck, z + stem, z + stem + 0.012),
+                slab(0.8 * neck, neck, (z + stem, z + stem + 0.012)),
             ),
             beam(0.4 * neck, 0.3 * neck, (0, 0, z + stem + 0.006), (0, -1.5 * radius, z + stem)),
         )
@@ -220,8 +246,8 @@ def pump_bottle(b: ObjectBuilder, radius: float, height: float) -> None:
     else:
         high = b.draw(0.01, 0.04)
         z = top - 0.8 * high if b.maybe() else top + max(play, -0.3 * high)
-        b.part("cap", b.cylinder(1.15 * neck, (0, 0, z), (0, 0, z + high)))
-        b.bore("cap", b.cylinder(neck + b.gap(neck) + 1e-05, (0, 0, 0), (0, 0, top + b.gap(neck) + 1e-05)))
+        b.part("cap", b.cylinder(1.15 * neck, z, z + high))
+        b.bore("cap", b.cylinder(neck + b.gap(neck) + 1e-05, 0, top + b.gap(neck) + 1e-05))
         if b.maybe():
             b.spin("cap", parent="bottle", axis=Z, pivot=(0, 0, z))
         else:
@@ -237,9 +263,9 @@ def pump_bottle(b: ObjectBuilder, radius: float, height: float) -> None:
 )
 def plain_bucket(b: ObjectBuilder, radius: float, height: float, wire: float) -> None:
     """A pail or a basket with one bow or two that swing about their ends, upright or laid on the rim."""
-    b.part("pail", b.cone(b.draw(0.6, 1) * radius, radius, (0, 0, 0), (0, 0, height)), material="metal")
+    b.part("pail", b.cone(b.draw(0.6, 1) * radius, radius, 0, height), look="metal")
     if b.style.hollow:
-        b.cut("pail", b.cone(0.55 * radius, 0.95 * radius, (0, 0, 0.01), (0, 0, height + 0.001)))
+        b.cut("pail", b.cone(0.55 * radius, 0.95 * radius, 0.01, height + 0.001))
     play = seam(b, radius, wire)
     wide = radius + wire + max(play, -wire)
     z = height - b.draw(0.02, 0.15) * height
@@ -251,7 +277,7 @@ def plain_bucket(b: ObjectBuilder, radius: float, height: float, wire: float) ->
         out = wide / (cos(pi / 2 / (len(steps) - 1)) if b.style.has_bore else 1)
         points = [vector(out * cos(a), y, z + tall * out * sin(a)) for a in steps]
         name = f"bow_{k}"
-        b.part(name, [b.rod(wire, p, q) for p, q in pairwise(points)], material="metal")
+        b.part(name, [b.rod(wire, p, q) for p, q in pairwise(points)], look="metal")
         if b.style.barrels and b.style.hollow:
             b.part(
                 "pail", [b.cylinder(0.8 * wire, (s * 0.9 * radius, y, z), (s * (wide - wire), y, z)) for s in (-1, 1)]
@@ -281,7 +307,7 @@ def plain_stapler(b: ObjectBuilder, length: float, wide: float, thickness: float
     """A base and an arm that is hinged behind: a stapler, a punch, a clip, a press."""
     arm = b.draw(0.8, 1.3) * thickness
     rise = b.pick(0, b.draw(0.05, 0.3))
-    b.part("base", box((-wide / 2, 0, 0), (wide / 2, length, thickness)), material="metal")
+    b.part("base", slab(wide / 2, (0, length), (0, thickness)), look="metal")
     play = seam(b, wide, thickness)
     low = thickness + max(play, 0.001)
     if cheeks:
@@ -289,9 +315,9 @@ def plain_stapler(b: ObjectBuilder, length: float, wide: float, thickness: float
             b.part("base", box((s * wide / 2, 0.8 * length, 0), (s * (wide / 2 - 0.12 * wide), length, low + arm)))
     half = wide / 2 - (0.12 * wide + max(play, 0.0005) if cheeks else 0)
     end = (b.draw(0.85, 0.94) if cheeks else 0.97) * length
-    b.part("arm", box((-half, b.draw(-0.05, 0.1) * length, low), (half, end, low + arm)), material="metal")
+    b.part("arm", slab(half, (b.draw(-0.05, 0.1) * length, end), (low, low + arm)), look="metal")
     if b.maybe():
-        b.part("arm", box((-0.8 * half, 0, low + arm), (0.8 * half, 0.6 * length, low + 1.4 * arm)))
+        b.part("arm", slab(0.8 * half, (0, 0.6 * length), (low + arm, low + 1.4 * arm)))
     pivot = (0, end, low + (0.5 * arm if cheeks else 0))
     b.hinge("arm", parent="base", axis=-X, pivot=pivot, upper=b.draw(0.6, 1.4 if cheeks else 2), ajar=False, rest=rise)
 
@@ -307,14 +333,14 @@ def plain_stapler(b: ObjectBuilder, length: float, wide: float, thickness: float
 )
 def slab_laptop(d: ObjectBuilder, width: float, depth: float, a: float, b: float, reach: float) -> None:
     """Two slabs on an edge, mostly open: a laptop, a game, a case for make-up; keys or a pad at times."""
-    d.part("base", box((-width / 2, 0, 0), (width / 2, depth, a)))
+    d.part("base", slab(width / 2, (0, depth), (0, a)))
     play = max(seam(d, depth, b), -0.2 * b)
     low = a + play
     shrink = d.pick(0, 0.01) * width
-    d.part("screen", box((-width / 2 + shrink, shrink, low), (width / 2 - shrink, depth, low + b)))
-    d.cut("screen", box((-0.44 * width, 0.08 * depth, low - 1), (0.44 * width, 0.9 * depth, low + 0.2 * b)))
+    d.part("screen", slab(width / 2 - shrink, (shrink, depth), (low, low + b)))
+    d.cut("screen", slab(0.44 * width, (0.08 * depth, 0.9 * depth), (low - 1, low + 0.2 * b)))
     if d.maybe(0.4):
-        d.cut("base", box((-0.4 * width, 0.4 * depth, 0.85 * a), (0.4 * width, 0.9 * depth, a + 1)))
+        d.cut("base", slab(0.4 * width, (0.4 * depth, 0.9 * depth), (0.85 * a, a + 1)))
     if d.maybe(0.25):
         button(
             d, "key", parent="base", at=(0.44 * width, 0.95 * depth - 0.005, a), size=(0.006, 0.006), high=0.001, out=Z
@@ -346,9 +372,9 @@ def plain_globe(b: ObjectBuilder, radius: float) -> None:
     wide = radius + max(0.04 * radius, play1 + 0.02 * radius) + 0.04 * radius
     b.part(
         "stand",
-        b.cylinder(b.draw(0.5, 0.8) * radius, (0, 0, 0), (0, 0, 0.08 * radius)),
+        b.cylinder(b.draw(0.5, 0.8) * radius, 0, 0.08 * radius),
         b.cylinder(0.06 * radius, (0, 0, 0), middle - 0.99 * wide * Z),
-        material="metal",
+        look="metal",
     )
     angles = np.linspace(0, pi, 14)
     bow = [middle + wide * (cos(a) * up - sin(a) * side) for a in angles]
@@ -376,24 +402,20 @@ def rod_lamp(
     b: ObjectBuilder, number: int, length: float, radius: float, foot: float, angle: float, high: float
 ) -> None:
     """Plain rods that touch or stand in each other at their ends, a shade or a head at the last."""
-    b.part(
-        "foot",
-        b.pick(b.cylinder(foot, (0, 0, 0), (0, 0, 0.02)), box((-foot, -foot, 0), (foot, foot, 0.03))),
-        material="metal",
-    )
+    b.part("foot", b.pick(b.cylinder(foot, 0, 0.02), slab(foot, foot, (0, 0.03))), look="metal")
     at = vector(0, 0, 0.03)
     parent = "foot"
     play = b.gap(2 * radius)
     if b.maybe():
         h = b.draw(0.05, 0.3)
-        b.part("foot", b.cylinder(1.5 * radius, (0, 0, 0), (0, 0, 0.03 + h)))
+        b.part("foot", b.cylinder(1.5 * radius, 0, 0.03 + h))
         at = vector(0, 0, 0.03 + h)
     for k in range(number):
         along = vector(0, -sin(angle), cos(angle))
         beside = (2.5 * radius + play) * X if b.style.has_bore else 0 * X
         start = at + beside + (0 if b.style.has_bore else b.pick(0, 0.8 * radius)) * along
         end = at + beside + length * along
-        b.part(f"arm_{k}", b.pick(b.rod(radius, start, end), b.cylinder(radius, start, end)), material="metal")
+        b.part(f"arm_{k}", b.pick(b.rod(radius, start, end), b.cylinder(radius, start, end)), look="metal")
         if not b.style.has_bore and b.maybe():
             b.part(f"arm_{k}", ball(1.8 * radius, at))
         b.hinge(
@@ -416,7 +438,7 @@ def rod_lamp(
             b.cone(0.3 * high, high, at + beside, at + beside + high * out),
             beam(0.5 * high, 0.2 * high, at + beside, at + beside + 2 * high * out),
         ),
-        material="metal",
+        look="metal",
     )
     if b.style.has_bore:
         b.cut("head", box(at - 5 * radius - X, at + 5 * radius + (radius + play / 2 - 5 * radius) * X))
@@ -435,10 +457,8 @@ def plain_clock(b: ObjectBuilder, radius: float, thickness: float) -> None:
     """A disc or a box with two or three thin hands before it about one line; a knob behind at times."""
     b.part(
         "case",
-        b.pick(
-            b.cylinder(radius, (0, 0, 0), (0, thickness, 0)), box((-radius, 0, -radius), (radius, thickness, radius))
-        ),
-        material="wood",
+        b.pick(b.cylinder(radius, (0, 0, 0), (0, thickness, 0)), slab(radius, (0, thickness), radius)),
+        look="wood",
     )
     deep = 0.3 * thickness
     if b.style.hollow and b.maybe():
@@ -457,9 +477,7 @@ def plain_clock(b: ObjectBuilder, radius: float, thickness: float) -> None:
         middle = vector(0, y - thick / 2, 0)
         name = ("hour", "minute", "second")[k]
         b.part(
-            name,
-            beam(wide, thick, middle - b.pick(0, 0.15) * length * along, middle + length * along, Y),
-            material="metal",
+            name, beam(wide, thick, middle - b.pick(0, 0.15) * length * along, middle + length * along, Y), look="metal"
         )
         if b.maybe():
             b.part(name, b.cylinder(0.05 * radius, (0, y, 0), (0, y - thick, 0)))
@@ -480,7 +498,7 @@ def plain_clock(b: ObjectBuilder, radius: float, thickness: float) -> None:
 )
 def box_fan(b: ObjectBuilder, radius: float, thickness: float, number: int) -> None:
     """Blades in a ring or a box that nothing visible holds, or a spindle behind them does."""
-    b.part("case", box((-1.15 * radius, -thickness / 2, -1.15 * radius), (1.15 * radius, thickness / 2, 1.15 * radius)))
+    b.part("case", slab(1.15 * radius, thickness / 2, 1.15 * radius))
     b.cut("case", b.cylinder(1.04 * radius + b.style.gap, (0, -1, 0), (0, 1, 0)))
     if b.maybe(0.4):
         b.part(
@@ -498,8 +516,8 @@ def box_fan(b: ObjectBuilder, radius: float, thickness: float, number: int) -> N
         b.part("rotor", beam(0.35 * radius, 0.02 * radius, 0.8 * hub * along, 0.97 * radius * along, flat))
     b.cut(
         "rotor",
-        box((-2 * radius, -0.4 * thickness - 1, -2 * radius), (2 * radius, -0.33 * thickness, 2 * radius)),
-        box((-2 * radius, 0.33 * thickness, -2 * radius), (2 * radius, 0.4 * thickness + 1, 2 * radius)),
+        slab(2 * radius, (-0.4 * thickness - 1, -0.33 * thickness), 2 * radius),
+        slab(2 * radius, (0.33 * thickness, 0.4 * thickness + 1), 2 * radius),
     )
     b.spin("rotor", parent="case", axis=-Y, pivot=(0, 0, 0))
 
@@ -515,7 +533,7 @@ def box_fan(b: ObjectBuilder, radius: float, thickness: float, number: int) -> N
 )
 def flip_cap(b: ObjectBuilder, width: float, thickness: float, height: float, kind: str, share: float) -> None:
     """A stick or a block with a cover: hinged at an end, turning about a pin, or drawn off: a lighter, a USB stick."""
-    b.part("body", box((-width / 2, -thickness / 2, 0), (width / 2, thickness / 2, share * height)), material="metal")
+    b.part("body", slab(width / 2, thickness / 2, (0, share * height)), look="metal")
     play = seam(b, thickness, 0.004)
     if kind == "turns":
         g = max(b.gap(thickness), 0) if b.style.has_bore else b.pick(0, b.gap(thickness))
@@ -523,17 +541,15 @@ def flip_cap(b: ObjectBuilder, width: float, thickness: float, height: float, ki
         for s in (-1, 1):
             b.part(
                 "cover",
-                box(
-                    (-0.5 * width, s * (thickness / 2 + g), -0.1 * height),
-                    (0.5 * width, s * (thickness / 2 + g + sheet), 0.9 * height),
+                slab(
+                    0.5 * width,
+                    (s * (thickness / 2 + g), s * (thickness / 2 + g + sheet)),
+                    (-0.1 * height, 0.9 * height),
                 ),
             )
         b.part(
             "cover",
-            box(
-                (-0.5 * width, -thickness / 2 - g - sheet, 0.9 * height),
-                (0.5 * width, thickness / 2 + g + sheet, 0.9 * height + sheet),
-            ),
+            slab(0.5 * width, thickness / 2 + g + sheet, (0.9 * height, 0.9 * height + sheet)),
         )
         b.part(
             "body",
@@ -554,10 +570,10 @@ def flip_cap(b: ObjectBuilder, width: float, thickness: float, height: float, ki
             ajar=False,
         )
     else:
-        b.part("body", box((-0.35 * width, -0.35 * thickness, 0), (0.35 * width, 0.35 * thickness, 0.9 * height)))
+        b.part("body", slab(0.35 * width, 0.35 * thickness, (0, 0.9 * height)))
         low = share * height + play
-        b.part("cover", box((-width / 2, -thickness / 2, low), (width / 2, thickness / 2, height)), material="metal")
-        b.bore("cover", box((-0.4 * width, -0.4 * thickness, 0), (0.4 * width, 0.4 * thickness, 0.95 * height)))
+        b.part("cover", slab(width / 2, thickness / 2, (low, height)), look="metal")
+        b.bore("cover", slab(0.4 * width, 0.4 * thickness, (0, 0.95 * height)))
         if kind == "flips":
             b.hinge(
                 "cover",

@@ -11,7 +11,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import arm, axles, caster, rotor, wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, scaled, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, scaled, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -22,10 +22,10 @@ def parametric_tractor(b: ObjectBuilder, radius: float, q: float) -> None:
     """Large wheels behind, small ones in front on a swinging axle; a three-point arm."""
     b.part(
         "body",
-        box((-0.7, -0.3, radius - 0.2), (1.4, 0.3, radius + 0.4)),
-        box((-0.7, -0.5, radius + 0.3), (0.1, 0.5, radius + 0.45)),
+        slab((-0.7, 1.4), 0.3, (radius - 0.2, radius + 0.4)),
+        slab((-0.7, 0.1), 0.5, (radius + 0.3, radius + 0.45)),
         b.cylinder(0.04, (1, 0.1, radius + 0.3), (1, 0.1, radius + 0.9)),
-        material="steel",
+        look="steel",
     )
     for s, side in ((-1, "right"), (1, "left")):
         wheel(
@@ -41,9 +41,9 @@ def parametric_tractor(b: ObjectBuilder, radius: float, q: float) -> None:
     g = b.gap(0.1) + 0.005
     b.part(
         "axle",
-        box((1.1, -0.55, q - 0.05), (1.2, 0.55, q + 0.05)),
-        box((1.1, -0.06, q), (1.2, 0.06, radius - 0.2 - g)),
-        material="steel",
+        slab((1.1, 1.2), 0.55, (q - 0.05, q + 0.05)),
+        slab((1.1, 1.2), 0.06, (q, radius - 0.2 - g)),
+        look="steel",
     )
     b.hinge("axle", parent="body", axis=X, pivot=(1.15, 0, q), upper=0.1, lower=-0.1, ajar=False)
     for s, side in ((-1, "right"), (1, "left")):
@@ -77,9 +77,7 @@ def parametric_bicycle(d: ObjectBuilder, radius: float, b: float) -> None:
     seat = vector(0.3, 0, radius + 0.5)
     axle = vector(0.42, 0, radius - 0.05)
     d.part(
-        "frame",
-        [d.cylinder(t, p, q) for p, q in ((head, axle), (top, seat), (seat, axle), (head, top))],
-        material="steel",
+        "frame", [d.cylinder(t, p, q) for p, q in ((head, axle), (top, seat), (seat, axle), (head, top))], look="steel"
     )
     for s in (-0.05, 0.05):
         d.part(
@@ -101,7 +99,7 @@ def parametric_bicycle(d: ObjectBuilder, radius: float, b: float) -> None:
         "fork",
         [d.cylinder(0.6 * t, low + s * Y, foot + s * Y) for s in (-0.05, 0.05)],
         beam(0.03, 0.03, low - 0.06 * Y, low + 0.06 * Y),
-        material="steel",
+        look="steel",
     )
     if d.style.has_bore:
         d.part("fork", d.cylinder(0.4 * t, low, top + 0.2 * axis))
@@ -120,7 +118,7 @@ def parametric_bicycle(d: ObjectBuilder, radius: float, b: float) -> None:
                 beam(0.004, 0.004, at - (radius - 0.02) * v, at + (radius - 0.02) * v)
                 for v in (X, Z, (X + Z) / 1.41421, (X - Z) / 1.41421)
             ],
-            material="rubber",
+            look="rubber",
         )
         d.spin(name, parent=on, axis=Y, pivot=at)
     for s in (-1, 1):
@@ -128,7 +126,7 @@ def parametric_bicycle(d: ObjectBuilder, radius: float, b: float) -> None:
             "cranks",
             beam(0.012, 0.03, axle + s * 0.075 * Y, axle + s * 0.075 * Y + s * 0.17 * X),
             d.cylinder(0.012, axle + s * 0.07 * Y + s * 0.16 * X, axle + s * 0.17 * Y + s * 0.16 * X),
-            material="metal",
+            look="metal",
         )
     d.part("cranks", d.cylinder(0.008, axle - 0.08 * Y, axle + 0.08 * Y))
     d.bore("frame", d.cylinder(0.008 + 1.5 * d.gap(0.02) + 0.0005, axle - 0.2 * Y, axle + 0.2 * Y))
@@ -147,9 +145,9 @@ def scooter(b: ObjectBuilder, length: float, radius: float, height: float) -> No
     g = b.gap(0.02) + 0.0005
     b.part(
         "deck",
-        box((0, -0.06, 0.07), (length, 0.06, 0.09)),
+        slab((0, length), 0.06, (0.07, 0.09)),
         [box((-2.2 * radius, s, radius - 0.015), (0.02, s * 1.4, 0.085)) for s in (-0.03, 0.03)],
-        material="metal",
+        look="metal",
     )
     b.part(
         "deck",
@@ -165,15 +163,15 @@ def scooter(b: ObjectBuilder, length: float, radius: float, height: float) -> No
         "column",
         b.cylinder(0.02 - (g if b.style.has_bore else 0), (length + 0.08, 0, 0.12), (length + 0.08, 0, height)),
         b.cylinder(0.014, (length + 0.08, -0.2, height), (length + 0.08, 0.2, height)),
-        box((length + 0.055, -0.045, 0.12), (length + 0.105, 0.045, 0.14)),
-        material="metal",
+        slab((length + 0.055, length + 0.105), 0.045, (0.12, 0.14)),
+        look="metal",
     )
     for s in (-0.04, 0.04):
         b.part("column", beam(0.03, 0.008, (length + 0.08, s, 0.14), (length + 0.1, s, 0.035), Y))
     b.hinge("column", parent="deck", axis=Z, pivot=(length + 0.08, 0, 0.2), upper=0.9, lower=-0.9, ajar=False)
     for name, on, x in (("rear_wheel", "deck", -1.4 * radius), ("front_wheel", "column", length + 0.1)):
         q = 0.045 if on == "column" else radius
-        b.part(name, b.cylinder(q, (x, -0.025, q), (x, 0.025, q)), material="rubber")
+        b.part(name, b.cylinder(q, (x, -0.025, q), (x, 0.025, q)), look="rubber")
         b.spin(name, parent=on, axis=Y, pivot=(x, 0, q))
 
 
@@ -194,7 +192,7 @@ def parametric_wheelbarrow(b: ObjectBuilder, length: float, width: float, radius
             width,
             "y",
         ),
-        material="steel",
+        look="steel",
     )
     if b.style.hollow:
         b.cut(
@@ -214,7 +212,7 @@ def parametric_wheelbarrow(b: ObjectBuilder, length: float, width: float, radius
             b.cylinder(0.018, (-0.4 * length, s * 0.2, 0.36), (-0.4 * length, s * 0.2, 0)),
         )
     at = vector(0.6 * length, 0, radius)
-    b.part("wheel", b.cylinder(radius, at - 0.04 * Y, at + 0.04 * Y), material="rubber")
+    b.part("wheel", b.cylinder(radius, at - 0.04 * Y, at + 0.04 * Y), look="rubber")
     if b.style.barrels and (not b.style.has_bore):
         b.part(f"{b.pick('wheel', 'barrow')}", b.cylinder(0.01, at - 0.09 * Y, at + 0.09 * Y))
     b.spin("wheel", parent="barrow", axis=Y, pivot=at)
@@ -230,7 +228,7 @@ def parametric_wheelbarrow(b: ObjectBuilder, length: float, width: float, radius
 def parametric_hand_truck(b: ObjectBuilder, width: float, height: float, radius: float) -> None:
     """A sack truck with two wheels and a plate that folds up."""
     for s in (-1, 1):
-        b.part("frame", b.cylinder(0.016, (s * width / 2, 0, 0.03), (s * width / 2, 0, height)), material="steel")
+        b.part("frame", b.cylinder(0.016, (s * width / 2, 0, 0.03), (s * width / 2, 0, height)), look="steel")
     b.part(
         "frame",
         [b.cylinder(0.012, (-width / 2, 0, z), (width / 2, 0, z)) for z in (0.06, 0.4 * height, 0.7 * height, height)],
@@ -253,7 +251,7 @@ def parametric_hand_truck(b: ObjectBuilder, width: float, height: float, radius:
         )
     g = b.gap(0.03) + 0.001
     y = -0.018 - g
-    b.part("plate", box((-0.45 * width, -0.25, 0.025), (0.45 * width, y, 0.033)), material="steel")
+    b.part("plate", slab(0.45 * width, (-0.25, y), (0.025, 0.033)), look="steel")
     b.hinge("plate", parent="frame", axis=-X, pivot=(0, y, 0.029), upper=1.5, ajar=False)
 
 
@@ -269,10 +267,10 @@ def parametric_wheelchair(b: ObjectBuilder, width: float, radius: float) -> None
     z = 0.5
     b.part(
         "chair",
-        box((-0.22, -width / 2, z), (0.22, width / 2, z + 0.03)),
-        box((-0.25, -width / 2, z), (-0.22, width / 2, z + 0.45)),
-        [box((-0.25, s * width / 2, 0.25), (0.25, s * (width / 2 - 0.03), z + 0.2)) for s in (-1, 1)],
-        material="steel",
+        slab(0.22, width / 2, (z, z + 0.03)),
+        slab((-0.25, -0.22), width / 2, (z, z + 0.45)),
+        [slab(0.25, (s * width / 2, s * (width / 2 - 0.03)), (0.25, z + 0.2)) for s in (-1, 1)],
+        look="steel",
     )
     axles(b, "chair", xs=(-0.15,), half=width / 2, radius=radius, wide=0.03, axle=0.03)
     for k, s in enumerate((-1, 1)):
@@ -303,9 +301,9 @@ def parametric_helicopter(b: ObjectBuilder, size: float) -> None:
         "hull",
         b.rod(0.6 * size, (-0.5 * size, 0, 1.2 * size), (0.6 * size, 0, 1.2 * size)),
         b.cone(0.3 * size, 0.1 * size, (-0.8 * size, 0, 1.4 * size), (-3.2 * size, 0, 1.6 * size)),
-        b.cylinder(0.12 * size, (0, 0, 1.7 * size), (0, 0, 2 * size)),
-        box((-3.3 * size, -0.03 * size, 1.5 * size), (-3 * size, 0.03 * size, 2.2 * size)),
-        material="metal",
+        b.cylinder(0.12 * size, 1.7 * size, 2 * size),
+        slab((-3.3 * size, -3 * size), 0.03 * size, (1.5 * size, 2.2 * size)),
+        look="metal",
     )
     for s in (-1, 1):
         b.part(
@@ -349,7 +347,7 @@ def light_aircraft(d: ObjectBuilder, length: float, b: float) -> None:
         "airframe",
         d.cone(0.6 * k, 0.15 * k, p(0.25 * length, 0, 1.2), p(-0.7 * length, 0, 1.4)),
         d.cone(0.6 * k, 0.3 * k, p(0.25 * length, 0, 1.2), p(0.33 * length, 0, 1.2)),
-        material="metal",
+        look="metal",
     )
     z = d.pick(0.9, 1.75)
     d.part(
@@ -457,16 +455,14 @@ def sailing_boat(b: ObjectBuilder, length: float) -> None:
             "z",
         ),
         b.cylinder(0.012 * length, (0.1 * length, 0, 0.1 * length), (0.1 * length, 0, 1.2 * length)),
-        material="wood",
+        look="wood",
     )
     if b.style.hollow:
-        b.cut("hull", box((-0.45 * length, -0.13 * length, 0.1 * length), (0.05 * length, 0.13 * length, 0.3 * length)))
+        b.cut("hull", slab((-0.45 * length, 0.05 * length), 0.13 * length, (0.1 * length, 0.3 * length)))
     g = b.gap(0.02 * length) + 0.0005
     z = 0.28 * length
     b.part(
-        "boom",
-        b.cylinder(0.01 * length, (0.1 * length - 0.012 * length - g, 0, z), (-0.4 * length, 0, z)),
-        material="wood",
+        "boom", b.cylinder(0.01 * length, (0.1 * length - 0.012 * length - g, 0, z), (-0.4 * length, 0, z)), look="wood"
     )
     if b.maybe(0.7):
         b.part(
@@ -489,9 +485,9 @@ def sailing_boat(b: ObjectBuilder, length: float) -> None:
     x = -0.5 * length - g
     b.part(
         "rudder",
-        box((x - 0.1 * length, -0.008 * length, -0.15 * length), (x - 0.01 * length, 0.008 * length, 0.2 * length)),
+        slab((x - 0.1 * length, x - 0.01 * length), 0.008 * length, (-0.15 * length, 0.2 * length)),
         beam(0.02 * length, 0.02 * length, (x - 0.05 * length, 0, 0.2 * length), (x + 0.2 * length, 0, 0.24 * length)),
-        material="wood",
+        look="wood",
     )
     b.hinge("rudder", parent="hull", axis=Z, pivot=(x, 0, 0), upper=0.7, lower=-0.7)
 
@@ -513,7 +509,7 @@ def parametric_rowing_boat(b: ObjectBuilder, length: float) -> None:
             0.2 * length,
             "z",
         ),
-        material="wood",
+        look="wood",
     )
     if b.style.hollow:
         b.cut(
@@ -540,7 +536,7 @@ def parametric_rowing_boat(b: ObjectBuilder, length: float) -> None:
             f"oar_{k}",
             b.cylinder(0.012 * length, (0, s * 0.05 * length, z), (0, s * 0.6 * length, z)),
             block((0, s * 0.65 * length, z), (0.06 * length, 0.14 * length, 0.01 * length)),
-            material="wood",
+            look="wood",
         )
         if b.style.barrels:
             holder = b.pick("hull", f"oar_{k}")
@@ -555,22 +551,22 @@ def parametric_forklift(b: ObjectBuilder, radius: float) -> None:
     w = 1.0
     b.part(
         "truck",
-        box((-n / 2, -w / 2, 0.15), (n / 2, w / 2, 0.8)),
+        slab(n / 2, w / 2, (0.15, 0.8)),
         [
             box((n / 2, s * 0.42 * w - 0.05, 0.08), (n / 2 + 0.1, s * 0.42 * w + 0.05, b.draw(1.8, 2.4)))
             for s in (-1, 1)
         ],
         [b.cylinder(0.03, (x, s * 0.45 * w, 0.7), (x, s * 0.45 * w, 1.9)) for s in (-1, 1) for x in (-0.4, 0.5)],
-        box((-0.5, -0.5 * w, 1.88), (0.6, 0.5 * w, 1.92)),
-        material="steel",
+        slab((-0.5, 0.6), 0.5 * w, (1.88, 1.92)),
+        look="steel",
     )
     g = b.gap(0.05) + 0.001
     x = n / 2 + 0.1 + g
     b.part(
         "carriage",
-        box((x, -0.45 * w, 0.1), (x + 0.04, 0.45 * w, 0.6)),
+        slab((x, x + 0.04), 0.45 * w, (0.1, 0.6)),
         [box((x, s * 0.3 - 0.06, 0.06), (x + 1, s * 0.3 + 0.06, 0.1)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
     b.slide("carriage", parent="truck", axis=Z, upper=1.2)
     for i, x in enumerate((-0.5, 0.45)):
@@ -607,14 +603,14 @@ def digger(b: ObjectBuilder, size: float) -> None:
         [b.rod(0.35 * size, p(-1.2, s * 1, 0.35), p(1.2, s * 1, 0.35)) for s in (-1, 1)],
         box(p(-0.9, -1, 0.2), p(0.9, 1, 0.6)),
         b.cylinder(0.7 * size, p(0, 0, 0.5), p(0, 0, 0.8)),
-        material="steel",
+        look="steel",
     )
     g = b.gap(0.1 * size)
     b.part(
         "house",
         box(p(-1.3, -0.9, 0.8) + g * Z, p(1, 0.9, 1.3)),
         box(p(-0.2, 0.1, 1.2), p(0.95, 0.85, 2.3)),
-        material="steel",
+        look="steel",
     )
     b.spin("house", parent="tracks", axis=Z, pivot=(0, 0, 0.8 * size))
     a = p(1.25, -0.3, 1.1)
@@ -648,7 +644,7 @@ def digger(b: ObjectBuilder, size: float) -> None:
             0.5 * size,
             "y",
         ),
-        material="steel",
+        look="steel",
     )
     b.hinge("bucket", parent="stick", axis=Y, pivot=c, upper=0.8, lower=-0.3, ajar=False)
 
@@ -664,7 +660,7 @@ def parametric_swing(b: ObjectBuilder, number: int, width: float, height: float)
             for s in (-1, 1)
             for t in (-1, 1)
         ],
-        material="wood",
+        look="wood",
     )
     g = b.gap(0.05)
     for k, x in enumerate(spread(number, -0.46 * width, 0.46 * width)):
@@ -672,9 +668,9 @@ def parametric_swing(b: ObjectBuilder, number: int, width: float, height: float)
         top = height - 0.05 - g if not b.style.barrels else height
         b.part(
             f"seat_{k}",
-            box((x - a, -0.12, 0.42), (x + a, 0.12, 0.45)),
+            slab((x - a, x + a), 0.12, (0.42, 0.45)),
             [b.cylinder(0.01, (x + s * 0.9 * a, 0, 0.43), (x + s * 0.9 * a, 0, top)) for s in (-1, 1)],
-            material="wood",
+            look="wood",
         )
         b.hinge(
             f"seat_{k}",
@@ -693,18 +689,18 @@ def parametric_seesaw(b: ObjectBuilder, length: float, height: float) -> None:
     b.part(
         "stand",
         prism([(-0.3, 0), (0.3, 0), (0.05, height - 0.02), (-0.05, height - 0.02)], (0, 0, 0), 0.2, "y"),
-        material="wood",
+        look="wood",
     )
     g = b.gap(0.05)
     b.part(
         "plank",
-        box((-length / 2, -0.12, height + g), (length / 2, 0.12, height + g + 0.04)),
+        slab(length / 2, 0.12, (height + g, height + g + 0.04)),
         [
             b.cylinder(0.015, (s * 0.4 * length, -0.12, height + 0.25), (s * 0.4 * length, 0.12, height + 0.25))
             for s in (-1, 1)
         ],
         [b.cylinder(0.015, (s * 0.4 * length, 0, height), (s * 0.4 * length, 0, height + 0.25)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     if not b.style.has_bore:
         b.part(f"{b.pick('stand', 'plank')}", b.cylinder(0.03, (0, -0.13, height), (0, 0.13, height)))
@@ -716,9 +712,9 @@ def parametric_seesaw(b: ObjectBuilder, length: float, height: float) -> None:
 @kind("parametric merry go round", like="merry_go_round", radius=length(0.8, 1.6))
 def parametric_merry_go_round(b: ObjectBuilder, radius: float) -> None:
     """A disc with rails on a post."""
-    b.part("base", b.cylinder(0.15 * radius, (0, 0, 0), (0, 0, 0.15)), material="steel")
+    b.part("base", b.cylinder(0.15 * radius, 0, 0.15), look="steel")
     g = b.gap(0.1)
-    b.part("disc", b.cylinder(radius, (0, 0, 0.15 + g), (0, 0, 0.2 + g)), material="wood")
+    b.part("disc", b.cylinder(radius, 0.15 + g, 0.2 + g), look="wood")
     n = b.count(3, 6)
     for a in np.arange(n) * 2 * pi / n:
         p = (0.9 * radius * cos(a), 0.9 * radius * sin(a))
@@ -748,9 +744,9 @@ def parametric_ferris_wheel(b: ObjectBuilder, radius: float, number: int) -> Non
                 beam(0.06 * radius, 0.06 * radius, (s * 0.3 * radius, t * 0.6 * radius, 0), (s * 0.3 * radius, 0, h), X)
                 for t in (-1, 1)
             ],
-            material="steel",
+            look="steel",
         )
-    b.part("stand", box((-0.33 * radius, -0.7 * radius, -0.05 * radius), (0.33 * radius, 0.7 * radius, 0)))
+    b.part("stand", slab(0.33 * radius, 0.7 * radius, (-0.05 * radius, 0)))
     axle = b.cylinder(0.03 * radius, (-0.3 * radius, 0, h), (0.3 * radius, 0, h))
     b.part("stand", axle)
     g = b.gap(0.03 * radius)
@@ -759,7 +755,7 @@ def parametric_ferris_wheel(b: ObjectBuilder, radius: float, number: int) -> Non
             "wheel",
             b.torus(radius, 0.02 * radius, (s * 0.18 * radius, 0, h), X),
             b.cylinder(0.08 * radius, (s * 0.16 * radius, 0, h), (s * 0.2 * radius, 0, h)),
-            material="steel",
+            look="steel",
         )
     angles = np.arange(number) * 2 * pi / number + 0.3
     for k, a in enumerate(angles):
@@ -802,20 +798,17 @@ def parametric_water_wheel(b: ObjectBuilder, radius: float) -> None:
     for s in (-1, 1):
         b.part(
             "walls",
-            box(
-                (s * (w / 2 + 0.05 * radius), -0.5 * radius, 0),
-                (s * (w / 2 + 0.2 * radius), 0.5 * radius, 1.2 * radius),
-            ),
-            material="wood",
+            slab((s * (w / 2 + 0.05 * radius), s * (w / 2 + 0.2 * radius)), 0.5 * radius, (0, 1.2 * radius)),
+            look="wood",
         )
-    b.part("walls", box((-w, -1.2 * radius, -0.1 * radius), (w, 1.2 * radius, 0)))
+    b.part("walls", slab(w, 1.2 * radius, (-0.1 * radius, 0)))
     g = b.gap(0.05 * radius)
     c = vector(0, 0, 1.1 * radius)
     b.part(
         "wheel",
         b.cylinder(0.06 * radius, c - (w / 2 + 0.15 * radius) * X, c + (w / 2 + 0.15 * radius) * X),
         [b.tube(0.9 * radius, 0.8 * radius, c + s * w / 2 * X, c + s * (w / 2 - 0.04 * radius) * X) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     n = b.count(6, 10)
     for a in np.arange(n) * 2 * pi / n:
@@ -830,12 +823,12 @@ def well_with_windlass(b: ObjectBuilder, radius: float, height: float) -> None:
     """A roller with a crank above a well, a bucket beside."""
     b.part(
         "well",
-        b.tube(radius, 0.85 * radius, (0, 0, 0), (0, 0, height)),
+        b.tube(radius, 0.85 * radius, 0, height),
         [
-            box((s * 0.93 * radius - 0.04, -0.05, 0.5 * height), (s * 0.93 * radius + 0.04, 0.05, height + 0.7))
+            slab((s * 0.93 * radius - 0.04, s * 0.93 * radius + 0.04), 0.05, (0.5 * height, height + 0.7))
             for s in (-1, 1)
         ],
-        material="ceramic",
+        look="ceramic",
     )
     g = b.gap(0.05) + 0.0005
     z = height + 0.5
@@ -846,7 +839,7 @@ def well_with_windlass(b: ObjectBuilder, radius: float, height: float) -> None:
         b.cylinder(0.02, (-0.93 * radius, 0, z), (end + 0.1, 0, z)),
         beam(0.03, 0.03, (end + 0.1, 0, z), (end + 0.1, 0.22, z)),
         b.cylinder(0.015, (end + 0.1, 0.21, z), (end + 0.25, 0.21, z)),
-        material="wood",
+        look="wood",
     )
     b.bore("well", b.cylinder(0.02 + 1.5 * g, (-0.93 * radius - 0.02, 0, z), (radius + 1, 0, z)))
     b.spin("roller", parent="well", axis=X, pivot=(0, 0, z))
@@ -865,22 +858,19 @@ def garden_gate(b: ObjectBuilder, width: float, height: float, number: int) -> N
     posts = (-width * number / 2 - 0.06, width * number / 2 + 0.06)
     b.part(
         "posts",
-        [box((x - 0.05, -0.05, 0), (x + 0.05, 0.05, height + 0.15)) for x in posts],
-        box((posts[0], -0.05, -0.05), (posts[1], 0.05, 0.005)),
-        material="wood",
+        [slab((x - 0.05, x + 0.05), 0.05, (0, height + 0.15)) for x in posts],
+        slab((posts[0], posts[1]), 0.05, (-0.05, 0.005)),
+        look="wood",
     )
     for k in range(number):
         s = -1 if k == 0 else 1
         x0, x1 = sorted((s * width * number / 2, s * width * (number / 2 - 1) + s * g))
         x0 = x0 + (g - 0.01 if s < 0 else 0)
         x1 = x1 - (g - 0.01 if s > 0 else 0)
-        slats = [
-            box((x - 0.03, -0.012, 0.06), (x + 0.03, 0.012, height))
-            for x in spread(b.count(5, 8), x0 + 0.01, x1 - 0.01)
-        ]
+        slats = [slab((x - 0.03, x + 0.03), 0.012, (0.06, height)) for x in spread(b.count(5, 8), x0 + 0.01, x1 - 0.01)]
         y = 0.012
         rails = [box((x0, y - 0.001, z), (x1, y + 0.025, z + 0.07)) for z in (0.15, height - 0.2)]
-        b.part(f"leaf_{k}", slats, rails, material="wood")
+        b.part(f"leaf_{k}", slats, rails, look="wood")
         pivot = (s * width * number / 2 + s * 0.005 * b.style.barrels, b.pick(-0.05, -0.05, -0.012), 0)
         b.hinge(f"leaf_{k}", parent="posts", axis=Z * s, pivot=pivot, upper=b.draw(1.2, 1.6))
 
@@ -888,10 +878,10 @@ def garden_gate(b: ObjectBuilder, width: float, height: float, number: int) -> N
 @kind("parametric barrier", like="barrier", length=length(1.5, 4.0), height=length(0.9, 1.1))
 def parametric_barrier(b: ObjectBuilder, length: float, height: float) -> None:
     """A boom that goes up beside a post."""
-    b.part("post", box((-0.15, -0.12, 0), (0.15, 0.12, height + 0.1)), material="steel")
+    b.part("post", slab(0.15, 0.12, (0, height + 0.1)), look="steel")
     g = b.gap(0.1)
     y = -0.12 - g
-    b.part("boom", beam(0.05, 0.1, (-0.35, y - 0.025, height), (length, y - 0.025, height)), material="metal")
+    b.part("boom", beam(0.05, 0.1, (-0.35, y - 0.025, height), (length, y - 0.025, height)), look="metal")
     if b.maybe():
         b.part("boom", block((-0.35, y - 0.05, height), (0.25, 0.1, 0.2)))
     if b.style.barrels and (not b.style.has_bore):
@@ -902,7 +892,7 @@ def parametric_barrier(b: ObjectBuilder, length: float, height: float) -> None:
 @kind("parametric turnstile", like="turnstile", height=length(0.85, 1.0))
 def parametric_turnstile(b: ObjectBuilder, height: float) -> None:
     """Three arms on a slanted hub, or a wing."""
-    b.part("cabinet", box((-0.15, -0.5, 0), (0.15, 0.5, height)), material="steel")
+    b.part("cabinet", slab(0.15, 0.5, (0, height)), look="steel")
     g = b.gap(0.05)
     at = vector(0.15, 0, height - 0.12)
     if b.maybe():
@@ -913,7 +903,7 @@ def parametric_turnstile(b: ObjectBuilder, height: float) -> None:
                 b.cylinder(0.02, at + 0.05 * X, at + 0.05 * X + 0.45 * vector(0.5, 0.87 * cos(a), 0.87 * sin(a)))
                 for a in np.arange(3) * 2 * pi / 3
             ],
-            material="steel",
+            look="steel",
         )
         b.spin("arms", parent="cabinet", axis=X, pivot=at)
     else:
@@ -921,8 +911,8 @@ def parametric_turnstile(b: ObjectBuilder, height: float) -> None:
         b.part(
             "arms",
             b.cylinder(0.04, (0.2, 0, 0.1 + g), (0.2, 0, height)),
-            box((0.2, -0.01, 0.3), (0.75, 0.01, height - 0.1)),
-            material="glass",
+            slab((0.2, 0.75), 0.01, (0.3, height - 0.1)),
+            look="glass",
         )
         b.hinge("arms", parent="cabinet", axis=Z, pivot=(0.2, 0, 0.1), upper=1.5, lower=-1.5, ajar=False)
 
@@ -938,14 +928,12 @@ def parametric_lawn_mower(b: ObjectBuilder, length: float, width: float, radius:
     """A deck with wheels, a blade below, a handle that folds."""
     b.part(
         "deck",
-        box((-length / 2, -width / 2, radius), (length / 2, width / 2, radius + 0.12)),
-        b.cylinder(0.12, (0, 0, radius + 0.1), (0, 0, radius + 0.3)),
-        material="steel",
+        slab(length / 2, width / 2, (radius, radius + 0.12)),
+        b.cylinder(0.12, radius + 0.1, radius + 0.3),
+        look="steel",
     )
     if b.style.hollow:
-        b.cut(
-            "deck", box((-length / 2 + 0.02, -width / 2 + 0.02, 0), (length / 2 - 0.02, width / 2 - 0.02, radius + 0.1))
-        )
+        b.cut("deck", slab(length / 2 - 0.02, width / 2 - 0.02, (0, radius + 0.1)))
     for i, x in enumerate((-0.4 * length, 0.4 * length)):
         for s in (-1, 1):
             wheel(
@@ -961,10 +949,7 @@ def parametric_lawn_mower(b: ObjectBuilder, length: float, width: float, radius:
     z = radius + 0.1 if b.style.hollow else radius
     g = b.gap(0.02)
     b.part(
-        "blade",
-        b.cylinder(0.02, (0, 0, z - 0.03), (0, 0, z - g)),
-        block((0, 0, z - 0.028), (0.8 * width, 0.05, 0.004)),
-        material="steel",
+        "blade", b.cylinder(0.02, z - 0.03, z - g), block((0, 0, z - 0.028), (0.8 * width, 0.05, 0.004)), look="steel"
     )
     b.spin("blade", parent="deck", axis=Z, pivot=(0, 0, z))
     x = -length / 2 + 0.05
@@ -975,7 +960,7 @@ def parametric_lawn_mower(b: ObjectBuilder, length: float, width: float, radius:
             for s in (-1, 1)
         ],
         b.cylinder(0.014, (x - 0.7, -0.3 * width, 0.95), (x - 0.7, 0.3 * width, 0.95)),
-        material="steel",
+        look="steel",
     )
     b.hinge("handle", parent="deck", axis=Y, pivot=(x, 0, radius + 0.135 + g), upper=1.2, lower=-0.3)
 
@@ -984,20 +969,15 @@ def parametric_lawn_mower(b: ObjectBuilder, length: float, width: float, radius:
 def parasol(b: ObjectBuilder, height: float, radius: float) -> None:
     """A canopy that tilts on a pole that slides in its stand."""
     b.part(
-        "stand",
-        b.cylinder(0.25, (0, 0, 0), (0, 0, 0.08)),
-        b.tube(0.03, 0.02 if b.style.has_bore else 0.001, (0, 0, 0.05), (0, 0, 0.5)),
-        material="steel",
+        "stand", b.cylinder(0.25, 0, 0.08), b.tube(0.03, 0.02 if b.style.has_bore else 0.001, 0.05, 0.5), look="steel"
     )
     g = b.gap(0.02) + 0.0003
-    b.part(
-        "pole", b.cylinder(0.02 - (g if b.style.has_bore else 0), (0, 0, 0.1), (0, 0, 0.8 * height)), material="metal"
-    )
+    b.part("pole", b.cylinder(0.02 - (g if b.style.has_bore else 0), 0.1, 0.8 * height), look="metal")
     b.slide("pole", parent="stand", axis=Z, upper=0.25)
     b.part(
         "canopy",
-        b.cylinder(0.018, (0, 0, 0.8 * height + g), (0, 0, height)),
-        b.cone(radius, 0.02, (0, 0, height - 0.05), (0, 0, height + 0.25 * radius)),
+        b.cylinder(0.018, 0.8 * height + g, height),
+        b.cone(radius, 0.02, height - 0.05, height + 0.25 * radius),
     )
     b.hinge(
         "canopy", parent="pole", axis=X, pivot=(0, 0, 0.8 * height), upper=0.02 if b.style.has_bore else 0.7, ajar=False

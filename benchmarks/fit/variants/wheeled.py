@@ -11,7 +11,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import button, in_fork
 from kinematify.generate.library.panels import leaf, seam
-from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 def fork_barrow(b: ObjectBuilder, width: float, depth: float, radius: float) -> None:
     """A tray or a frame on one wheel in a fork, or on two: a barrow, a walker, a stroller of plain bars."""
     floor = 2 * radius + b.draw(0.05, 0.15)
-    b.part("tray", box((-width / 2, 0, floor), (width / 2, depth, floor + b.draw(0.15, 0.35))), material="metal")
+    b.part("tray", slab(width / 2, (0, depth), (floor, floor + b.draw(0.15, 0.35))), look="metal")
     if b.style.hollow:
-        b.cut("tray", box((-0.46 * width, 0.03 * depth, floor + 0.02), (0.46 * width, 0.97 * depth, floor + 1)))
+        b.cut("tray", slab(0.46 * width, (0.03 * depth, 0.97 * depth), (floor + 0.02, floor + 1)))
     wide = b.draw(0.15, 0.5) * radius
     for s in (-1, 1):
         b.part(
@@ -60,7 +60,7 @@ def plain_swivel_chair(
 ) -> None:
     """A seat that turns or goes up on a column on feet; wheels in forks or bare discs below, a back that leans."""
     foot = b.pick(0, b.draw(0.04, 0.07))
-    b.part("base", b.cylinder(0.03, (0, 0, foot), (0, 0, 0.75 * height)), material="metal")
+    b.part("base", b.cylinder(0.03, foot, 0.75 * height), look="metal")
     for k, a in enumerate(np.arange(number) * 2 * pi / number):
         tip = radius * vector(cos(a), sin(a), 0)
         b.part("base", beam(0.04, 0.03, (0, 0, foot + 0.03), tip + (foot + 0.02) * Z))
@@ -70,34 +70,34 @@ def plain_swivel_chair(
             play = max(b.gap(foot), 0.0005)
             wheel_radius = 0.48 * foot - play
             at = tip + (wheel_radius - 0.02 * foot) * Z
-            b.part(f"wheel_{k}", b.cylinder(wheel_radius, at - 0.012 * axis, at + 0.012 * axis), material="rubber")
+            b.part(f"wheel_{k}", b.cylinder(wheel_radius, at - 0.012 * axis, at + 0.012 * axis), look="rubber")
             b.spin(f"wheel_{k}", parent="base", axis=axis, pivot=at)
     play = seam(b, 0.06, 0.03)
     low = 0.75 * height + play
     b.part(
         "seat",
-        b.cylinder(0.02, (0, 0, 0.4 * height if b.style.has_bore else low), (0, 0, height)),
+        b.cylinder(0.02, 0.4 * height if b.style.has_bore else low, height),
         b.pick(
-            b.cylinder(width / 2, (0, 0, height), (0, 0, height + 0.06)),
-            box((-width / 2, -width / 2, height), (width / 2, width / 2, height + 0.08)),
+            b.cylinder(width / 2, height, height + 0.06),
+            slab(width / 2, width / 2, (height, height + 0.08)),
         ),
     )
-    b.bore("base", b.cylinder(0.02 + 2 * b.gap(0.06) + 0.0001, (0, 0, 0.38 * height), (0, 0, height)))
+    b.bore("base", b.cylinder(0.02 + 2 * b.gap(0.06) + 0.0001, 0.38 * height, height))
     if b.maybe(0.75):
         b.spin("seat", parent="base", axis=Z, pivot=(0, 0, low))
     else:
         b.slide("seat", parent="base", axis=Z, upper=b.draw(0.05, 0.2))
     top = height + 0.1
-    back = box((-0.45 * width, width / 2, top), (0.45 * width, width / 2 + thick, top + b.draw(0.3, 0.6)))
+    back = slab(0.45 * width, (width / 2, width / 2 + thick), (top, top + b.draw(0.3, 0.6)))
     if kind == "merged":
         b.part(
             "seat",
             back,
-            box((-0.1 * width, 0.3 * width, height), (0.1 * width, width / 2 + 0.5 * thick, height + 0.02)),
-            box((-0.1 * width, width / 2, height), (0.1 * width, width / 2 + 0.5 * thick, top + 0.02)),
+            slab(0.1 * width, (0.3 * width, width / 2 + 0.5 * thick), (height, height + 0.02)),
+            slab(0.1 * width, (width / 2, width / 2 + 0.5 * thick), (height, top + 0.02)),
         )
     elif kind == "leans":
-        b.part("seat", box((-0.1 * width, 0.3 * width, height), (0.1 * width, width / 2 + thick, height + 0.04)))
+        b.part("seat", slab(0.1 * width, (0.3 * width, width / 2 + thick), (height, height + 0.04)))
         play1 = max(seam(b, width, 0.02), -0.01)
         lift = height + 0.04 + play1 - top
         b.part("back", back.translate(lift * Z))
@@ -119,14 +119,14 @@ def plain_toilet(b: ObjectBuilder, width: float, depth: float, height: float, ta
     """A bowl and a tank: a seat and a lid behind it, a tank lid that lifts, a flush button or lever."""
     b.part(
         "bowl",
-        box((-width / 2, 0.1, 0), (width / 2, depth, 0.5 * height)),
+        slab(width / 2, (0.1, depth), (0, 0.5 * height)),
         b.cylinder(width / 2, (0, width / 2, 0.4 * height), (0, width / 2, height)),
-        box((-width / 2, width / 2, 0.4 * height), (width / 2, depth + 0.02, height)),
+        slab(width / 2, (width / 2, depth + 0.02), (0.4 * height, height)),
     )
     if b.style.hollow:
         b.cut("bowl", b.cylinder(0.36 * width, (0, width / 2, 0.5 * height), (0, width / 2, height + 1)))
     if tank:
-        b.part("bowl", box((-0.5 * width, depth + 0.02, 0.5 * height), (0.5 * width, depth + 0.18, height + 0.35)))
+        b.part("bowl", slab(0.5 * width, (depth + 0.02, depth + 0.18), (0.5 * height, height + 0.35)))
     play = seam(b, width, 0.015)
     level = height
     edge = depth - b.draw(0, 0.03)
@@ -135,7 +135,7 @@ def plain_toilet(b: ObjectBuilder, width: float, depth: float, height: float, ta
         b.part(
             name,
             b.cylinder(width / 2, (0, width / 2, low), (0, width / 2, low + thick)),
-            box((-width / 2, width / 2, low), (width / 2, edge, low + thick)),
+            slab(width / 2, (width / 2, edge), (low, low + thick)),
         )
         if name == "seat":
             b.cut(name, b.cylinder(0.33 * width, (0, width / 2, low - 1), (0, width / 2, low + 1)))
@@ -155,10 +155,7 @@ def plain_toilet(b: ObjectBuilder, width: float, depth: float, height: float, ta
         if b.maybe(0.5):
             b.part(
                 "tank_lid",
-                box(
-                    (-0.53 * width, depth + 0.02 - min(0, play1), high + play1),
-                    (0.53 * width, depth + 0.19, high + play1 + 0.03),
-                ),
+                slab(0.53 * width, (depth + 0.02 - min(0, play1), depth + 0.19), (high + play1, high + play1 + 0.03)),
             )
             b.slide("tank_lid", parent="bowl", axis=Z, upper=b.draw(0.05, 0.2), ajar=False)
         elif b.maybe():
@@ -179,7 +176,7 @@ def plain_toilet(b: ObjectBuilder, width: float, depth: float, height: float, ta
                 "lever",
                 b.cylinder(0.012, at - play1 * Y, at - 0.015 * Y),
                 beam(0.012, 0.008, at - 0.012 * Y, at - 0.012 * Y + 0.08 * X),
-                material="metal",
+                look="metal",
             )
             b.hinge("lever", parent="bowl", axis=Y, pivot=at, upper=0.6, ajar=False)
 
@@ -196,14 +193,14 @@ def parametric_grand_piano(b: ObjectBuilder, width: float, depth: float, height:
     """A case on legs, a large lid on its long side, a fall before the keys, keys and pedals as they come."""
     b.part(
         "case",
-        box((-width / 2, 0.25, height), (width / 2, depth, height + deep)),
-        box((-width / 2, 0, height), (width / 2, 0.3, height + 0.3 * deep)),
-        material="wood",
+        slab(width / 2, (0.25, depth), (height, height + deep)),
+        slab(width / 2, (0, 0.3), (height, height + 0.3 * deep)),
+        look="wood",
     )
     for x, y in ((-0.4 * width, 0.15), (0.4 * width, 0.15), (0, 0.85 * depth)):
         b.part("case", b.cylinder(0.05, (x, y, 0), (x, y, height + 0.01)))
     if b.style.hollow:
-        b.cut("case", box((-0.47 * width, 0.32, height + 0.1), (0.47 * width, 0.97 * depth, height + 1)))
+        b.cut("case", slab(0.47 * width, (0.32, 0.97 * depth), (height + 0.1, height + 1)))
     leaf(
         b,
         "lid",
@@ -220,7 +217,7 @@ def parametric_grand_piano(b: ObjectBuilder, width: float, depth: float, height:
     y = 0.222 if b.style.has_bore else 0.24
     low = height + 0.3 * deep
     if b.maybe(0.7):
-        b.part("fall", box((-0.46 * width, 0.03, low + 0.03 + play1), (0.46 * width, y, low + 0.045 + play1)))
+        b.part("fall", slab(0.46 * width, (0.03, y), (low + 0.03 + play1, low + 0.045 + play1)))
         b.hinge("fall", parent="case", axis=-X, pivot=(0, y, low + 0.03 + play1), upper=b.draw(1.2, 1.6), ajar=False)
     for k, x in enumerate(spread(b.count(0, 6), -0.4 * width, 0.4 * width)):
         half = 0.025

@@ -10,7 +10,7 @@ from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import button, lever
 from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
-from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, off, rod, union
+from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, off, rod, slab, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "toilet",
     words="water closet, loo, lavatory, toilet bowl, commode toilet, wc, toilet seat, kids toilet",
     material="ceramic",
     width=length(0.3, 0.6, default=0.4, usual=(0.35, 0.45), help="Outer width."),
@@ -51,7 +50,7 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
     def oval(width: float, front: float, back: float, span: tuple[float, float]) -> Manifold:
         radius = 0.5 * width
         round_part = cylinder(radius, (0, front + radius, span[0]), (0, front + radius, span[1]))
-        return hull(round_part, box((-0.8 * radius, back - 0.01, span[0]), (0.8 * radius, back, span[1])))
+        return hull(round_part, slab(0.8 * radius, (back - 0.01, back), (span[0], span[1])))
 
     # A bowl on a foot, with a deck that reaches back under the tank.
     def bowl(back: float) -> Manifold:
@@ -79,8 +78,8 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
     tank_depth = 0.24 * depth
     axis = (depth - tank_depth - the_tank, height + tight + seat)
     tank_top = height + 0.85 * depth * 0.6
-    tank = box((-0.5 * width, depth - tank_depth, height - 0.05), (0.5 * width, depth, tank_top))
-    seam = box((-width, -1, tank_top - 0.035), (width, depth - tank_depth + 0.003, tank_top - 0.032))
+    tank = slab(0.5 * width, (depth - tank_depth, depth), (height - 0.05, tank_top))
+    seam = slab(width, (-1, depth - tank_depth + 0.003), (tank_top - 0.035, tank_top - 0.032))
     w.body("body", bowl(axis[0]), tank - seam)
     # Seat and lid; the seat owns the pins, posts of the body and knuckles of the lid stand on them.
     y, z = axis
@@ -114,30 +113,20 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
     pivot = (0.0, y, z)
     w.body("seat", its_ring, knuckles, pins, material="plastic")
     w.body("lid", union(cover, *of_lid) - union(*holes), material="plastic")
-    w.turns("seat", parent="body", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, opens - 0.95 * open * opens))
-    w.turns("lid", parent="seat", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, opens), rest=open)
+    w.turns("seat", "body", (-1, 0, 0), pivot, (0.0, opens - 0.95 * open * opens))
+    w.turns("lid", "seat", (-1, 0, 0), pivot, (0.0, opens), rest=open)
     # A lever at the front of the tank, or a button on its top; `corner` is y of the front and z of the top.
     front, top = (depth - tank_depth, tank_top)
     if flush == "button":
         with drawn_on(w, clearance, open) as b:
-            button(b, "button", parent="body", at=[0, front + 0.12 * depth, top], out=Z, size=(0.06, 0.035), high=0.012)
+            button(b, "button", "body", [0, front + 0.12 * depth, top], (0.06, 0.035), 0.012, Z)
     else:
         with drawn_on(w, clearance, open) as b:
-            lever(
-                b,
-                "lever",
-                parent="body",
-                at=[-0.35 * width, front, top - 0.08],
-                out=-Y,
-                along=X,
-                length=0.09,
-                reach=-0.8,
-            )
+            lever(b, "lever", "body", [-0.35 * width, front, top - 0.08], -Y, X, 0.09, reach=-0.8)
     w.settle()
 
 
 @kind(
-    "faucet",
     words=(
         "tap, water tap, kitchen tap, kitchen faucet, mixer tap, spigot, basin tap, bathroom faucet, sink "
         "faucet, bath tap, garden tap, sink tap, outdoor tap, shower tap, bathtub faucet, lab tap"
@@ -184,8 +173,8 @@ def faucet(
         post = 1.8 * pipe
         outlet = [rod(pipe, (0, 0, 0.62 * height), (0, -reach, 0.7 * height))]
         boss, hole, rotor = stub((0, 0, height), (0, 0, 1), post, clearance, length=1.2 * pipe)
-        plate = cylinder(2.6 * pipe, (0, 0, 0), (0, 0, the_plate))
-        w.body("body", plate, cylinder(post, (0, 0, 0), (0, 0, height)), boss, outlet)
+        plate = cylinder(2.6 * pipe, 0, the_plate)
+        w.body("body", plate, cylinder(post, 0, height), boss, outlet)
         w.cut("body", hole)
         small = 0.6 * pipe
         gap = min(clearance, 0.2 * pipe)
@@ -194,13 +183,13 @@ def faucet(
         w.body("cartridge", rotor, forked)
         its_handle = rod(small, (0, 0, hinge + 2.0 * small), (0, -0.9 * reach, hinge + 3.5 * small))
         w.body("lever", tongue, its_handle)
-        w.turns("cartridge", parent="body", axis=(0, 0, 1), pivot=(0, 0, height), limits=(-0.8, 0.8))
-        w.turns("lever", parent="cartridge", axis=(-1, 0, 0), pivot=(0, 0, hinge), limits=(0.0, 0.5), rest=open)
+        w.turns("cartridge", "body", (0, 0, 1), (0, 0, height), (-0.8, 0.8))
+        w.turns("lever", "cartridge", (-1, 0, 0), (0, 0, hinge), (0.0, 0.5), rest=open)
     elif handle == "twist":
         # Cross handles on posts beside the spout, or one on its top.
         half = 5.5 * pipe
         places = {1: (half,), 2: (-half, half)}[handles]
-        plate_2 = box((-1.35 * half, -2.2 * pipe, 0), (1.35 * half, 2.2 * pipe, the_plate))
+        plate_2 = slab(1.35 * half, 2.2 * pipe, (0, the_plate))
         rise = height - 0.5 * reach - pipe - the_plate
         its_pipe = spout(pipe, (0, 0, 0.5 * the_plate), max(rise, 3.0 * pipe), reach)
         w.body("body", plate_2, its_pipe.trim_by_plane((0, 0, 1), 0.0))
@@ -214,18 +203,16 @@ def faucet(
             if cross == "cross":
                 arms = [*arms, rod(0.5 * pipe, (x, -2.6 * pipe, level), (x, 2.6 * pipe, level))]
             w.body(f"handle_{k + 1}", rotor_2, arms)
-            w.turns(
-                f"handle_{k + 1}", parent="body", axis=(0, 0, 1), pivot=(x, 0, top), limits=(0.0, 1.5 * pi), rest=open
-            )
+            w.turns(f"handle_{k + 1}", "body", (0, 0, 1), (x, 0, top), (0.0, 1.5 * pi), rest=open)
     elif handle == "swivel":
         # A high spout that swivels on the post, and a lever at the post's side.
         post_2 = 1.7 * pipe
         top_2 = 7.0 * pipe
-        plate_3 = cylinder(2.6 * pipe, (0, 0, 0), (0, 0, the_plate))
+        plate_3 = cylinder(2.6 * pipe, 0, the_plate)
         boss_3, hole_3, rotor_3 = stub((0, 0, top_2), (0, 0, 1), post_2, clearance, length=1.5 * pipe)
         side = (2.6 * pipe, 0, 4.0 * pipe)
         side_boss, side_hole, side_rotor = stub(side, (1, 0, 0), 1.2 * pipe, clearance, length=1.5 * pipe)
-        w.body("body", plate_3, cylinder(post_2, (0, 0, 0), (0, 0, top_2)), boss_3, side_boss)
+        w.body("body", plate_3, cylinder(post_2, 0, top_2), boss_3, side_boss)
         w.cut("body", hole_3, side_hole)
         foot = (0, 0, top_2 + clearance + pipe)
         rise_2 = height - foot[2] - 0.5 * reach - pipe
@@ -233,6 +220,6 @@ def faucet(
         tip = off(side, clearance + 0.9 * pipe, 0, 0)
         lever = rod(0.55 * pipe, tip, off(tip, 2.0 * pipe, -0.6 * pipe, 5.0 * pipe))
         w.body("lever", side_rotor, lever)
-        w.turns("spout", parent="body", axis=(0, 0, 1), pivot=(0, 0, top_2), limits=(-2.0, 2.0))
-        w.turns("lever", parent="body", axis=(1, 0, 0), pivot=side, limits=(0.0, 1.0), rest=open)
+        w.turns("spout", "body", (0, 0, 1), (0, 0, top_2), (-2.0, 2.0))
+        w.turns("lever", "body", (1, 0, 0), side, (0.0, 1.0), rest=open)
     w.settle()

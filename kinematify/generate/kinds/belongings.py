@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.generate.library.kind import angle, choice, kind, length, whole
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, at, barrel, fork, stub
-from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, ring, rod, union, vector
+from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, ring, rod, slab, union, vector
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "laptop",
     words=(
         "notebook, notebook computer, laptop computer, portable computer, macbook, chromebook, netbook, "
         "ultrabook, toy laptop"
@@ -46,27 +45,26 @@ def laptop(
     opens = 2.2
     back = depth - 2.0 * radius - clearance - 0.001
     level = base + clearance
-    slab = box((-0.5 * width, 0, 0), (0.5 * width, back, base))
+    sheet = slab(0.5 * width, (0, back), (0, base))
     keys = [
-        box((x - 0.007, y - 0.007, -0.002), (x + 0.007, y + 0.007, 0.002)).translate((0, 0.58 * back, base))
+        slab((x - 0.007, x + 0.007), (y - 0.007, y + 0.007), 0.002).translate((0, 0.58 * back, base))
         for x, y in grid(48, 12, (min(0.9 * width, 0.3), min(0.4 * depth, 0.1)))
     ]
-    pad = box((-0.18 * width, 0.06 * back, base - 0.0005), (0.18 * width, 0.3 * back, base + 0.01))
-    lid = box((-0.5 * width, 0, level), (0.5 * width, back, level + screen))
-    hollow = box((-0.46 * width, 0.04 * back, level - 1.0), (0.46 * width, 0.96 * back, level + 0.0025))
-    w.body("base", slab - pad, keys)
+    pad = slab(0.18 * width, (0.06 * back, 0.3 * back), (base - 0.0005, base + 0.01))
+    lid = slab(0.5 * width, (0, back), (level, level + screen))
+    hollow = slab(0.46 * width, (0.04 * back, 0.96 * back), (level - 1.0, level + 0.0025))
+    w.body("base", sheet - pad, keys)
     w.body("screen", lid - hollow)
     edge = BackEdge(y=back, level=level, below=base, above=screen, clearance=clearance)
     places = (-0.32 * width, 0.32 * width)
     pivot = add_barrels(
         w, "screen", parent="base", edge=edge, places=places, length=0.16 * width, radius=radius, knuckles=knuckles
     )
-    w.turns("screen", parent="base", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, opens), rest=open)
+    w.turns("screen", "base", (-1, 0, 0), pivot, (0.0, opens), rest=open)
     w.settle()
 
 
 @kind(
-    "globe",
     words="world globe, earth globe, desk globe, terrestrial globe",
     material="plastic",
     part_words={"base": "stand"},
@@ -94,18 +92,18 @@ def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, fo
         start = 1.5 * the_foot
         w.body(
             "base",
-            cylinder(0.62 * radius, (0, 0, 0), (0, 0, the_foot), segments=64),
-            cylinder(0.5 * radius, (0, 0, 0), (0, 0, start), segments=64),
+            cylinder(0.62 * radius, 0, the_foot, segments=64),
+            cylinder(0.5 * radius, 0, start, segments=64),
         )
         if foot == "fixed":
-            w.add("base", cylinder(0.5 * wide, (0, 0, the_foot), (0, 0, low)))
+            w.add("base", cylinder(0.5 * wide, the_foot, low))
             found = "base"
         else:
             boss, hole, rotor = stub((0, 0, start + 0.01), (0, 0, 1), wide, clearance, length=0.012)
             w.add("base", boss)
             w.cut("base", hole)
-            w.body("meridian", rotor, cylinder(0.5 * wide, (0, 0, start + 0.01 + clearance), (0, 0, low)))
-            w.turns("meridian", parent="base", axis=(0, 0, 1), pivot=(0, 0, start + 0.01))
+            w.body("meridian", rotor, cylinder(0.5 * wide, start + 0.01 + clearance, low))
+            w.turns("meridian", "base", (0, 0, 1), (0, 0, start + 0.01))
             found = "meridian"
         return found
 
@@ -128,21 +126,20 @@ def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, fo
     meridian = ring(reach, arc, 360.0 if mount == "ring" else 180.0)
     meridian = meridian.rotate((0, 0, -90.0)).rotate((90.0, 0, 0))
     wide = pin + clearance + 0.003
-    bosses = [cylinder(wide, (0, 0, end), (0, 0, copysign(reach + arc + 0.002, end))) for end in ends]
+    bosses = [cylinder(wide, end, copysign(reach + arc + 0.002, end)) for end in ends]
     hole = bore(pin, clearance, (0, 0, -2.0 * reach), (0, 0, 2.0 * reach))
     w.add(carrier, tilted(union(meridian, *bosses) - hole))
     lines = [latitude(radius, radians(angle)) for angle in latitudes]
-    hubs = [cylinder(wide, (0, 0, 0.9 * end), (0, 0, copysign(1.02 * radius, end))) for end in ends]
+    hubs = [cylinder(wide, 0.9 * end, copysign(1.02 * radius, end)) for end in ends]
     tips = reach + arc + 0.004
-    shaft = cylinder(pin, (0, 0, -tips), (0, 0, tips))
+    shaft = cylinder(pin, -tips, tips)
     w.body("ball", tilted(ball(radius, (0, 0, 0), segments=64), *lines, *hubs, shaft), color="blue")
     axis = (sin(tilt), 0, cos(tilt))
-    w.turns("ball", parent=carrier, axis=axis, pivot=(0, 0, level))
+    w.turns("ball", carrier, axis, (0, 0, level))
     w.settle()
 
 
 @kind(
-    "umbrella",
     words=(
         "parasol, sunshade, patio umbrella, garden umbrella, beach umbrella, sun umbrella, market umbrella, "
         "rain umbrella, pocket umbrella, golf umbrella, cocktail umbrella, cafe umbrella"
@@ -169,7 +166,7 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
     # A straight grip, or a crook whose lowest place is the ground.
     def handle_of() -> Sequence[Manifold]:
         if handle == "straight":
-            found = [cylinder(0.013, (0, 0, 0), (0, 0, grip), segments=32)]
+            found = [cylinder(0.013, 0, grip, segments=32)]
         else:
             bend = 0.03
             thick = 0.009
@@ -177,7 +174,7 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
             hook = ring(bend, thick, 180.0).rotate((-90, 0, 0)).translate((bend, 0, level))
             found = [
                 hook,
-                cylinder(thick, (0, 0, level - 0.0001), (0, 0, grip), segments=32),
+                cylinder(thick, level - 0.0001, grip, segments=32),
                 rod(thick, (2.0 * bend, 0, level), (2.0 * bend, 0, level + 0.012)),
             ]
         return found
@@ -189,32 +186,30 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
         low = -min(reach, longest)
         start = -2.0 * knuckle
         return hull(
-            box((-0.25 * hinge, -0.001, start - 0.01), (0.25 * hinge, 0.001, start)),
-            box((-half, -0.001, 0.7 * low), (half, 0.001, 0.3 * low)),
-            box((-0.3 * half, -0.001, low), (0.3 * half, 0.001, low + 0.002)),
+            slab(0.25 * hinge, 0.001, (start - 0.01, start)),
+            slab(half, 0.001, (0.7 * low, 0.3 * low)),
+            slab(0.3 * half, 0.001, (low, low + 0.002)),
         )
 
     top = height - 0.05
     gap = min(clearance, 0.15 * knuckle)
     circle = max(0.026, 0.5 * (hinge + 0.003) / tan(pi / ribs) + knuckle)
     above = top + 2.5 * knuckle
-    crown = cylinder(circle + 1.2 * knuckle, (0, 0, above), (0, 0, above + 0.006))
-    point = rod(0.6 * the_shaft, (0, 0, top), (0, 0, top + 0.05 - 0.6 * the_shaft))
-    shaft = cylinder(the_shaft, (0, 0, 0.5 * grip), (0, 0, above + 0.012), segments=32)
+    crown = cylinder(circle + 1.2 * knuckle, above, above + 0.006)
+    point = rod(0.6 * the_shaft, top, top + 0.05 - 0.6 * the_shaft)
+    shaft = cylinder(the_shaft, 0.5 * grip, above + 0.012, segments=32)
     w.body("shaft", handle_of(), shaft, point, crown)
     # A sleeve that is pushed up the shaft.
     start = grip + 0.03
     tall = 0.04
-    sleeve = cylinder(0.012, (0, 0, start), (0, 0, start + tall)) + cylinder(
-        0.015, (0, 0, start + tall - 0.006), (0, 0, start + tall)
-    )
+    sleeve = cylinder(0.012, start, start + tall) + cylinder(0.015, start + tall - 0.006, start + tall)
     gap_2 = min(clearance, 0.002)
-    rib = box((-0.0015, 0, start - 0.01), (0.0015, the_shaft + 0.003, top - 0.01))
-    groove = box((-0.0015 - gap_2, 0, 0), (0.0015 + gap_2, the_shaft + 0.003 + gap_2, 2.0 * top))
+    rib = slab(0.0015, (0, the_shaft + 0.003), (start - 0.01, top - 0.01))
+    groove = slab(0.0015 + gap_2, (0, the_shaft + 0.003 + gap_2), (0, 2.0 * top))
     w.add("shaft", rib)
     w.body("runner", sleeve - bore(the_shaft, gap_2, (0, 0, 0), (0, 0, 2.0 * top)) - groove, material="plastic")
     way = 0.9 * (top - 0.02 - start - tall)
-    w.slides("runner", parent="shaft", axis=(0, 0, 1), pivot=(0, 0, start), limits=(0.0, way), rest=open)
+    w.slides("runner", "shaft", (0, 0, 1), (0, 0, start), (0.0, way), rest=open)
     forked, tongue = [half.rotate((180, 0, 0)) for half in fork(hinge, knuckle, gap, 3.0 * knuckle)]
     slat = tongue + slat_of(circle, top - grip - 0.02)
     for k in range(ribs):
@@ -225,12 +220,11 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
         w.body(name, slat.translate((0, -circle, top)).rotate((0, 0, its_degrees)))
         axis = (-cos(angle), -sin(angle), 0)
         pivot = (circle * sin(angle), -circle * cos(angle), top)
-        w.turns(name, parent="shaft", axis=axis, pivot=pivot, limits=(0.0, opens), rest=open)
+        w.turns(name, "shaft", axis, pivot, (0.0, opens), rest=open)
     w.settle()
 
 
 @kind(
-    "eyeglasses",
     words=(
         "glasses, pair of glasses, pair of eyeglasses, spectacles, pair of spectacles, sunglasses, pair of "
         "sunglasses, reading glasses, safety glasses, 3d glasses, ski glasses"
@@ -349,5 +343,5 @@ def eyeglasses(
         opened = temple_of(side, gap) + of_temple
         name = f"temple_{k + 1}"
         w.body(name, opened.transform(about(axis, pivot, -0.5 * pi)))
-        w.turns(name, parent="frame", axis=axis, pivot=pivot, limits=(0.0, 0.5 * pi), rest=open)
+        w.turns(name, "frame", axis, pivot, (0.0, 0.5 * pi), rest=open)
     w.settle()

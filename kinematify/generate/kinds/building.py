@@ -13,7 +13,7 @@ from kinematify.generate.library.panels import grip, leaf
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.pieces.fronts import Field
-from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, rod, union
+from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, rod, slab, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -163,7 +163,6 @@ def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int,
 
 
 @kind(
-    "door",
     usual={
         "sliding room door, sliding door, barn door, pocket door, patio door, sliding barn door": {"kind": "sliding"},
         "folding door, bifold door, accordion door, bi-fold door, concertina door": {"kind": "folding", "leaves": 2},
@@ -237,7 +236,7 @@ def door(
 
     def frame_of(depth: float) -> Manifold:
         half = 0.5 * width
-        return box((-half, 0, 0), (half, depth, height))
+        return slab(half, (0, depth), (0, height))
 
     # Width of the bars around a leaf's panels, where handles are.
     def stile_of(face: Field) -> float:
@@ -247,8 +246,8 @@ def door(
     def panels_of(face: Field, front: float) -> Manifold:
         return fields_of(face, front, thick, bar=stile_of(face), rows=panels, columns=1, sunk=0.25)
 
-    def panelled(slab: Manifold, face: Field, front: float) -> Manifold:
-        return slab - panels_of(face, front)
+    def panelled(board: Manifold, face: Field, front: float) -> Manifold:
+        return board - panels_of(face, front)
 
     def below_of(opening: Field) -> Manifold:
         return Field(left=opening.left, right=opening.right, bottom=-1.0, top=0.1).box(-1.0, 1.0)
@@ -271,9 +270,9 @@ def door(
                 leaf(
                     b,
                     f"leaf_{number}",
-                    parent="frame",
-                    lower=(field.left, 0, floor),
-                    upper=(field.right, thick, field.top),
+                    "frame",
+                    (field.left, 0, floor),
+                    (field.right, thick, field.top),
                     hinge=-X if edge == "left" else X,
                     inset=True,
                     reach=opens,
@@ -285,7 +284,7 @@ def door(
             )
             if handle == "bar":
                 with drawn_on(w, clearance) as b:
-                    grip(b, f"leaf_{number}", at=(x, 0, 1), out=-Y, along=Z, length=0.3, kind=handle)
+                    grip(b, f"leaf_{number}", (x, 0, 1), -Y, Z, 0.3, kind=handle)
             # A handle that turns: a lever towards the hinge, on both sides where there is room for it, or a knob.
             name = f"handle_{number}"
             stile = stile_of(field)
@@ -295,11 +294,11 @@ def door(
                     lever(
                         b,
                         name,
-                        parent=f"leaf_{number}",
-                        at=(x, 0, 1),
-                        out=-Y,
-                        along=-side * X,
-                        length=1.1 * stile,
+                        f"leaf_{number}",
+                        (x, 0, 1),
+                        -Y,
+                        -side * X,
+                        1.1 * stile,
                         reach=0.8 * side,
                         through=thick if stile > 0.08 else 0.0,
                     )
@@ -308,10 +307,10 @@ def door(
                     knob(
                         b,
                         name,
-                        parent=f"leaf_{number}",
-                        at=(x, 0, 1),
-                        out=-Y,
-                        radius=min(0.028, 0.4 * stile),
+                        f"leaf_{number}",
+                        (x, 0, 1),
+                        min(0.028, 0.4 * stile),
+                        -Y,
                         high=0.04,
                         reach=1.6,
                         material="metal",
@@ -321,11 +320,11 @@ def door(
         tracks = Grooves(opening=opening_of(0.03), count=max(leaves, 2), thick=thick, clearance=clearance)
         w.body("frame", frame_of(tracks.depth))
 
-        def finish(slab: Manifold, face: Field, front: float) -> Manifold:
+        def finish(board: Manifold, face: Field, front: float) -> Manifold:
             x = face.left + 0.5 * stile_of(face)
             half = min(0.012, 0.3 * stile_of(face))
             pull = box((x - half, front - 1.0, 0.93), (x + half, front + 0.3 * thick, 1.07))
-            return panelled(slab, face, front) - pull
+            return panelled(board, face, front) - pull
 
         add_sliding(w, "leaf", parent="frame", tracks=tracks, count=leaves, finish=finish, rest=open)
     elif kind == "folding":
@@ -343,8 +342,8 @@ def door(
             name_2 = f"leaf_{k + 1}"
             last = k + 1 == len(row)
             right = field_2.right - gap - (spare + gap if last else 0.0)
-            slab = box((field_2.left + gap, 0, field_2.bottom + gap), (right, thick, field_2.top - gap))
-            solids_2 = [panelled(slab, field_2, 0.0)]
+            board = box((field_2.left + gap, 0, field_2.bottom + gap), (right, thick, field_2.top - gap))
+            solids_2 = [panelled(board, field_2, 0.0)]
             if last:
                 solids_2 = [
                     *solids_2,
@@ -368,20 +367,12 @@ def door(
                 for its_body, half in zip((parent, name_2), halves, strict=False):
                     w.add(its_body, (half if level < 0 else half.mirror((0, 1, 0))).translate(place_2))
             opens_2 = folds if k == 0 else 2.0 * folds
-            w.turns(
-                name_2,
-                parent=parent,
-                axis=(0, 0, -1 if inwards else 1),
-                pivot=(field_2.left, level, 0),
-                limits=(0.0, opens_2),
-                rest=open,
-            )
+            w.turns(name_2, parent, (0, 0, -1 if inwards else 1), (field_2.left, level, 0), (0.0, opens_2), rest=open)
             parent = name_2
     w.settle()
 
 
 @kind(
-    "window",
     words=(
         "skylight, roof window, house window, basement window, casement window, attic window, bathroom "
         "window, kitchen window"
@@ -434,7 +425,7 @@ def window(
 
     def frame_of(depth: float) -> Manifold:
         half = 0.5 * width
-        return box((-half, 0, 0), (half, depth, height))
+        return slab(half, (0, depth), (0, height))
 
     # Width of the bars around a sash's panes.
     def bar_of(face: Field) -> float:
@@ -444,19 +435,19 @@ def window(
     def panes_of(face: Field, front: float) -> Manifold:
         return fields_of(face, front, thick, bar=bar_of(face), rows=rows, columns=columns, sunk=0.42)
 
-    def glazed(slab: Manifold, face: Field, front: float) -> Manifold:
-        return slab - panes_of(face, front)
+    def glazed(board: Manifold, face: Field, front: float) -> Manifold:
+        return board - panes_of(face, front)
 
     opening = Field(left=frame - 0.5 * width, right=0.5 * width - frame, bottom=frame, top=height - frame)
     if kind == "sliding":
         tracks = Grooves(opening=opening, count=max(sashes, 2), thick=thick, clearance=clearance)
         w.body("frame", frame_of(tracks.depth))
 
-        def finish(slab: Any, face: Any, front: Any) -> Any:
+        def finish(board: Any, face: Any, front: Any) -> Any:
             x = face.left + 0.5 * bar_of(face)
             z = face.middle[1]
             pull = box((x - 0.006, front - 1.0, z - 0.05), (x + 0.006, front + 0.008, z + 0.05))
-            return glazed(slab, face, front) - pull
+            return glazed(board, face, front) - pull
 
         add_sliding(w, "sash", parent="frame", tracks=tracks, count=sashes, finish=finish, rest=open)
     elif kind == "pivot":
@@ -472,15 +463,15 @@ def window(
             x, z = field.middle
             start = 0.5 * (the_depth - thick)
             lower = (field.left + gap, start, field.bottom + swing)
-            slab = box(lower, (field.right - gap, start + thick, field.top - swing))
+            board = box(lower, (field.right - gap, start + thick, field.top - swing))
             name = f"sash_{number}"
             reach = 0.4 * frame
             ends = ((field.left - reach, 0.5 * the_depth, z), (field.right + reach, 0.5 * the_depth, z))
             far = ((ends[0][0] - clearance, *ends[0][1:]), (ends[1][0] + clearance, *ends[1][1:]))
             w.cut("frame", bore(pin, clearance, *far))
             pins = cylinder(pin, *ends) - field.box(-1.0, 1.0, inset=2.0 * gap)
-            w.body(name, glazed(slab, field, start), pins)
-            w.turns(name, parent="frame", axis=(1, 0, 0), pivot=(x, 0.5 * the_depth, z), limits=(0.0, 1.3), rest=open)
+            w.body(name, glazed(board, field, start), pins)
+            w.turns(name, "frame", (1, 0, 0), (x, 0.5 * the_depth, z), (0.0, 1.3), rest=open)
     else:
         together = 2 if kind == "casement" else 1
         groups_2 = side_by_side(opening, sashes, frame, together=together)
@@ -495,9 +486,9 @@ def window(
                     leaf(
                         b,
                         f"sash_{number_2}",
-                        parent="frame",
-                        lower=(field_2.left, 0, field_2.bottom),
-                        upper=(field_2.right, thick, field_2.top),
+                        "frame",
+                        (field_2.left, 0, field_2.bottom),
+                        (field_2.right, thick, field_2.top),
                         hinge=edges[edge],
                         inset=True,
                         reach=turning[kind],
@@ -516,18 +507,17 @@ def window(
                         lever(
                             b,
                             f"handle_{number_2}",
-                            parent=f"sash_{number_2}",
-                            at=(x_2, 0, z_2),
-                            out=-Y,
-                            along=along,
-                            length=2.2 * bar,
+                            f"sash_{number_2}",
+                            (x_2, 0, z_2),
+                            -Y,
+                            along,
+                            2.2 * bar,
                             reach=-0.5 * pi if edge == "left" else 0.5 * pi,
                         )
     w.settle()
 
 
 @kind(
-    "switch panel",
     words=(
         "light switch, wall switch, switch plate, switch, dimmer switch, toggle switch, rocker switch, double "
         "switch plate, lamp switch, light switch panel"
@@ -559,21 +549,21 @@ def switch_panel(
     # A wedge with a ridge in its middle, level about its pins, and the room that it needs.
     def rocker(half: float, high: float, clearance: float) -> tuple[Manifold, Manifold]:
         edge = high * tan(the_tilt["rocker"]) - pivot - 0.003
-        ridge = box((-half, -pivot - 0.003, -0.001), (half, 0.004, 0.001))
-        wedge = hull(ridge, box((-half, edge, -high), (half, edge + 0.003, high)))
+        ridge = slab(half, (-pivot - 0.003, 0.004), 0.001)
+        wedge = hull(ridge, slab(half, (edge, edge + 0.003), high))
         reach = hypot(high, edge) + clearance
         wide = half + clearance
-        return (wedge, box((-wide, -1.0, -reach), (wide, pocket - pivot, reach)))
+        return (wedge, slab(wide, (-1.0, pocket - pivot), reach))
 
     # A stick on a hub, and the room that it needs.
     def toggle(half: float, clearance: float) -> tuple[Manifold, Manifold]:
         hub = cylinder(0.006, (-half, 0, 0), (half, 0, 0))
         stick = hull(rod(0.0035, (0, 0, 0), (0, -0.01, 0)), rod(0.0045, (0, -0.022, 0), (0, -0.024, 0)))
         wide = half + clearance
-        return (hub + stick, box((-wide, -1.0, -0.012 - clearance), (wide, 0.008 + clearance, 0.012 + clearance)))
+        return (hub + stick, slab(wide, (-1.0, 0.008 + clearance), 0.012 + clearance))
 
     half = 0.5 * pitch * (rockers + dimmers) + 0.006
-    plate = box((-half, 0, 0), (half, 0.004, height))
+    plate = slab(half, (0, 0.004), (0, height))
     housing = box((0.004 - half, 0.001, 0.004), (half - 0.004, switch_depth, height - 0.004))
     w.body("plate", plate, housing)
     for k in range(rockers):
@@ -594,23 +584,22 @@ def switch_panel(
         tilt = the_tilt[kind]
         name = f"rocker_{k + 1}"
         w.body(name, (solid + pins).rotate((degrees(tilt), 0, 0)).translate(place))
-        w.turns(name, parent="plate", axis=(-1, 0, 0), pivot=place, limits=(0.0, 2.0 * tilt), rest=open)
+        w.turns(name, "plate", (-1, 0, 0), place, (0.0, 2.0 * tilt), rest=open)
     for k in range(dimmers):
         with drawn_on(w, clearance, open) as b:
             knob(
                 b,
                 f"dimmer_{k + 1}",
-                parent="plate",
-                at=[(rockers + k + 0.5) * pitch - half + 0.006, 0, 0.5 * height],
-                out=-Y,
-                radius=0.36 * pitch,
+                "plate",
+                [(rockers + k + 0.5) * pitch - half + 0.006, 0, 0.5 * height],
+                0.36 * pitch,
+                -Y,
                 reach=4.7,
             )
     w.settle()
 
 
 @kind(
-    "button panel",
     words=(
         "keypad, control panel, push button panel, number pad, elevator panel, key pad, remote control, calculator, "
         "numeric pad, lift panel, elevator button panel, call panel, console, housing, machine housing, lab box, "
@@ -644,10 +633,10 @@ def button_panel(
     clearance: float,
 ) -> None:
     """Button panels and keypads: buttons in rows on a housing, with knobs and a display above them."""
-    w.body("housing", box((-0.5 * width, 0, 0), (0.5 * width, depth, height)))
+    w.body("housing", slab(0.5 * width, (0, depth), (0, height)))
     top = 0.94 * height
     if display == "display":
-        w.cut("housing", box((-0.42 * width, -1.0, top - 0.16 * height), (0.42 * width, 0.002, top)))
+        w.cut("housing", slab(0.42 * width, (-1.0, 0.002), (top - 0.16 * height, top)))
         top = top - 0.2 * height
     if knobs:
         pitch = 0.9 * width / knobs
@@ -657,10 +646,10 @@ def button_panel(
                 knob(
                     b,
                     f"knob_{k + 1}",
-                    parent="housing",
-                    at=[(k - 0.5 * (knobs - 1)) * pitch, 0, top - 0.1 * height],
-                    out=-Y,
-                    radius=radius,
+                    "housing",
+                    [(k - 0.5 * (knobs - 1)) * pitch, 0, top - 0.1 * height],
+                    radius,
+                    -Y,
                     deep=min(0.011, 0.5 * radius),
                     reach=4.7,
                 )
@@ -680,11 +669,11 @@ def button_panel(
             button(
                 b,
                 f"button_{k_2 + 1}",
-                parent="housing",
-                at=(x_2, 0, 0.5 * (bottom + top) + z),
-                out=-Y,
-                size=size,
-                high=min(0.006, 0.4 * pitch_2),
+                "housing",
+                (x_2, 0, 0.5 * (bottom + top) + z),
+                size,
+                min(0.006, 0.4 * pitch_2),
+                -Y,
                 is_round=shape == "round",
             )
     w.settle()

@@ -10,7 +10,7 @@ from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.library.mechanisms import caster, in_fork
 from kinematify.generate.library.panels import grip
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, barrel
-from kinematify.generate.procedural.solids import X, Z, bore, box, cylinder, hull, lathe, ring, rod, tray, union
+from kinematify.generate.procedural.solids import X, Z, bore, box, cylinder, hull, lathe, ring, rod, slab, tray, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "box",
     words=(
         "chest box, treasure chest, treasure chest box, toolbox, tool box, jewelry box, jewellery box, crate, case, "
         "container, casket, trunk, lunch box, pencil box, storage box, sewing kit box, money box, gift crate, apple "
@@ -106,10 +105,10 @@ def box_(
         # A lid that turns up about the upper back edge.
         level = height + clearance
         w.body("body", tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall))
-        its_lid = box((-0.5 * width, 0, level), (0.5 * width, depth, level + wall))
+        its_lid = slab(0.5 * width, (0, depth), (level, level + wall))
         if top == "round":
             its_lid = its_lid + vault(width, depth, level + 0.5 * wall, max(wall, min(0.35 * depth, 0.4 * height)))
-        grip = box((-0.12 * width, -0.012, level), (0.12 * width, 0.1 * depth, level + 0.3 * wall))
+        grip = slab(0.12 * width, (-0.012, 0.1 * depth), (level, level + 0.3 * wall))
         w.body("lid", its_lid, grip)
         pivot = (0.0, depth, level)
         if hinge != "edge":
@@ -121,7 +120,7 @@ def box_(
             pivot = add_barrels(
                 w, "lid", parent="body", edge=edge, places=places, length=length, radius=radius, knuckles=knuckles
             )
-        w.turns("lid", parent="body", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, 1.9), rest=open)
+        w.turns("lid", "body", (-1, 0, 0), pivot, (0.0, 1.9), rest=open)
     elif lid == "sliding":
         # A lid that is drawn out along -y in grooves of the side walls, as of a pencil box.
         level_2 = height - 2.0 * wall
@@ -129,16 +128,14 @@ def box_(
         groove = 0.5 * wall
         its_body = tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall)
         half = 0.5 * width - wall + groove
-        slot = box((-half, -1.0, level_2), (half, depth - wall + groove, level_2 + thick))
+        slot = slab(half, (-1.0, depth - wall + groove), (level_2, level_2 + thick))
         mouth = box((wall - 0.5 * width, -1.0, level_2), (0.5 * width - wall, wall + 0.001, height + 1.0))
         w.body("body", its_body - slot - mouth)
         gap = min(clearance, 0.25 * wall)
         its_lid = box((gap - half, 0, level_2 + gap), (half - gap, depth - wall + groove - gap, level_2 + thick - gap))
-        notch = box(
-            (-0.1 * width, 0.08 * depth, level_2), (0.1 * width, 0.08 * depth + 0.006, level_2 + thick + 0.3 * wall)
-        )
+        notch = slab(0.1 * width, (0.08 * depth, 0.08 * depth + 0.006), (level_2, level_2 + thick + 0.3 * wall))
         w.body("lid", its_lid, notch.trim_by_plane((0, 0, 1), level_2 + 0.5 * thick))
-        w.slides("lid", parent="body", axis=(0, -1, 0), pivot=(0, 0, level_2), limits=(0.0, 0.85 * depth), rest=open)
+        w.slides("lid", "body", (0, -1, 0), (0, 0, level_2), (0.0, 0.85 * depth), rest=open)
     elif lid == "loose":
         # A lid that reaches over the rim and is lifted off.
         gap_2 = max(clearance, 0.0002)
@@ -147,17 +144,14 @@ def box_(
         skirt = max(2.0 * wall, 0.2 * height)
         lower = (-0.5 * width - out, -out, height - skirt)
         cap = box(lower, (0.5 * width + out, depth + out, height + gap_2 + wall))
-        inner = box(
-            (-0.5 * width - gap_2, -gap_2, height - skirt - 1.0), (0.5 * width + gap_2, depth + gap_2, height + gap_2)
-        )
+        inner = slab(0.5 * width + gap_2, (-gap_2, depth + gap_2), (height - skirt - 1.0, height + gap_2))
         w.body("lid", cap - inner)
         travel = (0.0, 1.2 * skirt)
-        w.slides("lid", parent="body", axis=(0, 0, 1), pivot=(0, 0.5 * depth, height), limits=travel, rest=open)
+        w.slides("lid", "body", (0, 0, 1), (0, 0.5 * depth, height), travel, rest=open)
     w.settle()
 
 
 @kind(
-    "bottle",
     usual={
         "flip cap bottle, flip top bottle, tube with a flip cap, toothpaste tube, sauce bottle, flip top tube": {
             "cap": "flip"
@@ -212,7 +206,7 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
             (neck - wall, height + 0.01),
         ]
         inner = lathe([(0.0, wall), (radius - foot - wall, wall), *inside, (0.0, height + 0.01)])
-        bead = cylinder(neck + 0.0015, (0, 0, shoulder), (0, 0, shoulder + 0.002))
+        bead = cylinder(neck + 0.0015, shoulder, shoulder + 0.002)
         return outer + bead - inner
 
     w.body("body", vessel())
@@ -226,28 +220,26 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         inner = (bead + clearance) / cos(pi / 48)
         outer = inner + the_cap
         held = bottom + 0.003 + clearance
-        its_ring = cylinder(bead, (0, 0, held), (0, 0, held + 0.002)) - cylinder(
-            its_neck - 0.0001, (0, 0, -1.0), (0, 0, 1.0)
-        )
+        its_ring = cylinder(bead, held, held + 0.002) - cylinder(its_neck - 0.0001, -1.0, 1.0)
         w.add("body", its_ring)
         ribs = [
             cylinder(0.0008, (outer * cos(a), outer * sin(a), bottom), (outer * cos(a), outer * sin(a), top))
             for a in [2.0 * pi * k / the_ribs for k in range(the_ribs)]
         ]
-        hollow = cylinder(inner, (0, 0, bottom + 0.003), (0, 0, top)) + cylinder(lip, (0, 0, -1.0), (0, 0, top))
-        its_cap = cylinder(outer, (0, 0, bottom), (0, 0, top + the_cap)) - hollow
+        hollow = cylinder(inner, bottom + 0.003, top) + cylinder(lip, -1.0, top)
+        its_cap = cylinder(outer, bottom, top + the_cap) - hollow
         w.body("cap", its_cap, ribs, material="plastic")
-        w.turns("cap", parent="body", axis=(0, 0, 1), pivot=(0, 0, height))
+        w.turns("cap", "body", (0, 0, 1), (0, 0, height))
     elif cap == "pull":
         # A stopper in the neck with a head above the rim.
         its_neck, tall_2 = the_neck
         tight = min(clearance, 0.2 * its_neck)
         deep = 0.8 * tall_2
-        plug = cylinder(its_neck - wall - tight / cos(pi / 48), (0, 0, height - deep), (0, 0, height + 0.003))
-        head = cylinder(1.15 * its_neck, (0, 0, height + tight), (0, 0, height + tight + 0.6 * its_neck))
-        knob = cylinder(0.8 * its_neck, (0, 0, height), (0, 0, height + tight + 0.9 * its_neck))
+        plug = cylinder(its_neck - wall - tight / cos(pi / 48), height - deep, height + 0.003)
+        head = cylinder(1.15 * its_neck, height + tight, height + tight + 0.6 * its_neck)
+        knob = cylinder(0.8 * its_neck, height, height + tight + 0.9 * its_neck)
         w.body("cap", plug, head, knob.trim_by_plane((0, 0, 1), height + tight), material="plastic")
-        w.slides("cap", parent="body", axis=(0, 0, 1), pivot=(0, 0, height), limits=(0.0, 1.2 * deep), rest=open)
+        w.slides("cap", "body", (0, 0, 1), (0, 0, height), (0.0, 1.2 * deep), rest=open)
     elif cap == "flip":
         # A flat cap on a hinge behind the mouth, with a tab in front.
         its_neck, _unused = the_neck
@@ -255,19 +247,18 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         thick = 0.006
         half = 0.6 * its_neck
         y = its_neck + 0.001
-        inner_2 = cylinder(its_neck - wall, (0, 0, height - 0.02), (0, 0, height + 1.0))
-        w.add("body", box((-half, 0.5 * its_neck, height - 0.01), (half, y, height)) - inner_2)
-        back = box((-half, 0, level), (half, y, level + thick))
-        tab = box((-0.3 * its_neck, -its_neck - 0.004, level + 0.5 * thick), (0.3 * its_neck, 0, level + thick))
-        w.body("cap", cylinder(its_neck, (0, 0, level), (0, 0, level + thick)), back, tab, material="plastic")
+        inner_2 = cylinder(its_neck - wall, height - 0.02, height + 1.0)
+        w.add("body", slab(half, (0.5 * its_neck, y), (height - 0.01, height)) - inner_2)
+        back = slab(half, (0, y), (level, level + thick))
+        tab = slab(0.3 * its_neck, (-its_neck - 0.004, 0), (level + 0.5 * thick, level + thick))
+        w.body("cap", cylinder(its_neck, level, level + thick), back, tab, material="plastic")
         edge = BackEdge(y=y, level=level, below=0.009, above=thick, clearance=min(clearance, 0.5 * hinge))
         pivot = add_barrels(w, "cap", parent="body", edge=edge, places=(0.0,), length=1.6 * half, radius=hinge)
-        w.turns("cap", parent="body", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, 1.5), rest=open)
+        w.turns("cap", "body", (-1, 0, 0), pivot, (0.0, 1.5), rest=open)
     w.settle()
 
 
 @kind(
-    "bucket",
     words=(
         "pail, water bucket, paint bucket, cleaning bucket, mop bucket, sand bucket, champagne bucket, feed "
         "bucket, milk pail, beach bucket, toy bucket, slop bucket"
@@ -308,7 +299,7 @@ def bucket(
     # Solid as yet; the studs reach into it.
     def vessel() -> Manifold:
         radius = 0.5 * width
-        bead = cylinder(radius + the_bead, (0, 0, height - 0.006), (0, 0, height))
+        bead = cylinder(radius + the_bead, height - 0.006, height)
         return lathe(profile(0.0, 0.0, height)) + bead
 
     bucket_inside = lathe(profile(wall, wall, height + 0.0001))
@@ -346,12 +337,11 @@ def bucket(
     bail = bail.rotate((90.0 - degrees(lies), 0, 0)).translate((0, 0, level)) - union(*holes)
     w.body("handle", bail, material="steel")
     swing = (0.0, pi - 2.0 * lies)
-    w.turns("handle", parent="body", axis=(-1, 0, 0), pivot=(0, 0, level), limits=swing, rest=open)
+    w.turns("handle", "body", (-1, 0, 0), (0, 0, level), swing, rest=open)
     w.settle()
 
 
 @kind(
-    "trash can",
     words=(
         "garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, trashcan, pedal bin, "
         "wastebasket, kitchen bin, recycling can, waste basket, step bin, office bin, litter bin, bathroom "
@@ -385,53 +375,49 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         if shape == "square":
             lower = (-half, -half, foot)
             upper = (half, half, height)
-            found = tray(lower, upper, wall) + box((-half, -half, 0), (half, half, foot))
+            found = tray(lower, upper, wall) + slab(half, half, (0, foot))
         else:
-            inner = cylinder(half - wall, (0, 0, foot + wall), (0, 0, height + 1.0))
-            found = cylinder(half, (0, 0, 0), (0, 0, height)) - inner
+            inner = cylinder(half - wall, foot + wall, height + 1.0)
+            found = cylinder(half, 0, height) - inner
         return found
 
     # Keeps the seat of the hinge from reaching into the bin.
     def inside(half: float, height: float) -> Manifold:
-        return cylinder(half - wall, (0, 0, base + wall), (0, 0, height + 1.0))
+        return cylinder(half - wall, base + wall, height + 1.0)
 
     # A plate of the shape of the bin, wider by `grow` on all sides.
     def cover(grow: float, bottom: float, top: float) -> Manifold:
         half = 0.5 * width + grow
-        return (
-            box((-half, -half, bottom), (half, half, top))
-            if shape == "square"
-            else cylinder(half, (0, 0, bottom), (0, 0, top))
-        )
+        return slab(half, half, (bottom, top)) if shape == "square" else cylinder(half, bottom, top)
 
     if lid == "pedal":
         half = 0.5 * width
         level = height + clearance
         thick = 0.012
         seat = 0.04
-        w.body("body", bin(base), box((-seat, 0.8 * half, height - 0.03), (seat, half + 0.002, height)))
+        w.body("body", bin(base), slab(seat, (0.8 * half, half + 0.002), (height - 0.03, height)))
         w.cut("body", inside(half, height))
-        back = box((-seat, 0.0, level), (seat, half + 0.002, level + thick))
+        back = slab(seat, (0.0, half + 0.002), (level, level + thick))
         w.body("lid", cover(0.0, level, level + thick), back)
         edge = BackEdge(y=half + 0.002, level=level, below=0.03, above=thick, clearance=clearance)
         pivot = add_barrels(w, "lid", parent="body", edge=edge, places=(0.0,), length=2.0 * seat, radius=0.004)
-        w.turns("lid", parent="body", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, 1.5), rest=open)
+        w.turns("lid", "body", (-1, 0, 0), pivot, (0.0, 1.5), rest=open)
         # A lever on a pin across a slot of the foot; its end in front goes down.
         wide = 0.025
         level_2 = 0.036
         radius = 0.005
         back_2 = -half + 0.06
         tip = -half - 0.05
-        slot = box((-wide, -2.0 * half, 0.006), (wide, back_2 + 3.0 * radius, base - 0.006))
+        slot = slab(wide, (-2.0 * half, back_2 + 3.0 * radius), (0.006, base - 0.006))
         pin = ((-wide - 0.01, back_2, level_2), (wide + 0.01, back_2, level_2))
         hole = ((pin[0][0] - 0.002, back_2, level_2), (pin[1][0] + 0.002, back_2, level_2))
         w.cut("body", slot, bore(radius, clearance, *hole))
         inner = wide - max(clearance, 0.0005)
-        arm = box((-inner, tip + 0.02, level_2 - radius), (inner, back_2, level_2 + radius))
-        plate = box((-1.6 * wide, tip, level_2 - radius), (1.6 * wide, tip + 0.035, level_2 + radius))
+        arm = slab(inner, (tip + 0.02, back_2), (level_2 - radius, level_2 + radius))
+        plate = slab(1.6 * wide, (tip, tip + 0.035), (level_2 - radius, level_2 + radius))
         hub = cylinder(1.4 * radius, (-inner, back_2, level_2), (inner, back_2, level_2))
         w.body("pedal", arm, plate, hub, cylinder(radius, *pin), material="steel")
-        w.turns("pedal", parent="body", axis=(1, 0, 0), pivot=(0, back_2, level_2), limits=(0.0, pedal), rest=open)
+        w.turns("pedal", "body", (1, 0, 0), (0, back_2, level_2), (0.0, pedal), rest=open)
     elif lid == "swing":
         # A flap in the mouth on two pins in the side walls.
         half_2 = 0.5 * width
@@ -440,17 +426,17 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         radius_2 = 0.004
         if shape == "square":
             reach = inner_2 - clearance - 0.002
-            flap = box((-reach, -reach, level_3 - 0.003), (reach, reach, level_3 + 0.003))
+            flap = slab(reach, reach, (level_3 - 0.003, level_3 + 0.003))
         else:
             reach = 0.97 * inner_2 - clearance
-            flap = cylinder(reach, (0, 0, level_3 - 0.003), (0, 0, level_3 + 0.003))
-        ridge = box((-0.5 * reach, -0.008, level_3), (0.5 * reach, 0.008, level_3 + 0.012))
+            flap = cylinder(reach, level_3 - 0.003, level_3 + 0.003)
+        ridge = slab(0.5 * reach, 0.008, (level_3, level_3 + 0.012))
         pin_2 = ((-half_2 - 0.002, 0, level_3), (half_2 + 0.002, 0, level_3))
         steepest = asin(min(0.93, 0.95 * (level_3 - wall) / (reach + 0.01)))
         w.body("body", bin(0.0))
         w.cut("body", bore(radius_2, clearance, (-2.0 * half_2, 0, level_3), (2.0 * half_2, 0, level_3)))
         w.body("flap", flap, ridge, cylinder(radius_2, *pin_2))
-        w.turns("flap", parent="body", axis=(1, 0, 0), pivot=(0, 0, level_3), limits=(-steepest, steepest), rest=open)
+        w.turns("flap", "body", (1, 0, 0), (0, 0, level_3), (-steepest, steepest), rest=open)
     elif lid == "lift":
         # A lid with a skirt around the rim and a handle.
         skirt = 0.1 * height
@@ -459,13 +445,12 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         w.body("body", bin(0.0))
         w.body("lid", cap)
         with drawn_on(w, clearance) as b:
-            grip(b, "lid", at=(0, 0, top), out=Z, along=X, length=0.12, kind="knob")
-        w.slides("lid", parent="body", axis=(0, 0, 1), pivot=(0, 0, height), limits=(0.0, 1.2 * skirt), rest=open)
+            grip(b, "lid", (0, 0, top), Z, X, 0.12, kind="knob")
+        w.slides("lid", "body", (0, 0, 1), (0, 0, height), (0.0, 1.2 * skirt), rest=open)
     w.settle()
 
 
 @kind(
-    "suitcase",
     words=(
         "trolley case, luggage, travel case, roller suitcase, carry on, carry on suitcase, cabin bag, rolling "
         "suitcase, wheeled suitcase, hand luggage, travel suitcase, travel trolley"
@@ -554,7 +539,7 @@ def suitcase(
     deep = 0.5 * depth
     w.body("body", shell(0.0, deep), side_handle())
     w.body("front", shell(-clearance, -deep))
-    w.turns("front", parent="body", axis=(0, 0, -1), pivot=hinges(), limits=(0.0, opens), rest=open)
+    w.turns("front", "body", (0, 0, -1), hinges(), (0.0, opens), rest=open)
     if handle == "trolley":
         # Two tubes in sleeves at the back, with a grip above the top.
         x = 0.22 * width
@@ -570,7 +555,7 @@ def suitcase(
         bar = rod(0.009, (-x, y, grip), (x, y, grip))
         w.body("handle", tubes, bar, material="metal")
         way = 0.75 * (top - low)
-        w.slides("handle", parent="body", axis=(0, 0, 1), pivot=(0, y, top), limits=(0.0, way), rest=open)
+        w.slides("handle", "body", (0, 0, 1), (0, y, top), (0.0, way), rest=open)
     # Castors under both halves, or two wheels that only roll and feet beside them.
     x_2 = 0.5 * width - 0.07
     y_2 = 0.25 * depth
@@ -581,26 +566,10 @@ def suitcase(
         w.add(parent, cylinder(0.009, (px, py, bottom), (px, py, bottom + 0.028)))
         if wheels == 2:
             with drawn_on(w, clearance) as b:
-                in_fork(
-                    b,
-                    f"wheel_{k + 1}",
-                    parent=parent,
-                    middle=(px, py, wheel),
-                    radius=wheel,
-                    wide=0.02,
-                    top=bottom + 0.001,
-                )
+                in_fork(b, f"wheel_{k + 1}", parent, (px, py, wheel), wheel, 0.02, bottom + 0.001)
         else:
             with drawn_on(w, clearance) as b:
-                caster(
-                    b,
-                    f"wheel_{k + 1}",
-                    fork=f"castor_{k + 1}",
-                    parent=parent,
-                    top=(px, py, bottom),
-                    high=bottom,
-                    deep=0.022,
-                )
+                caster(b, f"wheel_{k + 1}", parent, (px, py, bottom), bottom, fork=f"castor_{k + 1}", deep=0.022)
     if wheels == 2:
         feet = [
             box((s * x_2 - 0.012, -y_2 - 0.012, 0), (s * x_2 + 0.012, 0.012 - y_2, bottom + 0.001)) for s in (-1, 1)

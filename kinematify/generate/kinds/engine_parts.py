@@ -5,30 +5,28 @@ from __future__ import annotations
 from math import cos, sin
 from typing import TYPE_CHECKING
 
-from kinematify.generate.library.kind import kind, length, whole
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box
+from kinematify.generate.library.kind import kind, whole
+from kinematify.generate.procedural.solids import X, Y, Z, beam, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
-    "disc brake",
     walls=60,
     words="disk brake, brake disc, brake caliper",
     part_words={"disc": "disk, rotor", "pad": "brake pad, piston"},
-    radius=length(0.08, 0.18),
+    radius=(0.08, 0.18),
 )
 def disc_brake(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "carrier",
-        box((-0.15 * r, 0.2 * r, -0.2 * r), (0.15 * r, 0.3 * r, 1.1 * r)),
-        box((-0.35 * r, -0.32 * r, 1.05 * r), (0.35 * r, 0.3 * r, 1.2 * r)),
-        box((-0.35 * r, -0.32 * r, 0.7 * r), (0.35 * r, -0.2 * r, 1.1 * r)),
-        box((-0.35 * r, 0.2 * r, 0.7 * r), (0.35 * r, 0.3 * r, 1.1 * r)),
-        material="steel",
-        color="grey",
+        slab(0.15 * r, (0.2 * r, 0.3 * r), (-0.2 * r, 1.1 * r)),
+        slab(0.35 * r, (-0.32 * r, 0.3 * r), (1.05 * r, 1.2 * r)),
+        slab(0.35 * r, (-0.32 * r, -0.2 * r), (0.7 * r, 1.1 * r)),
+        slab(0.35 * r, (0.2 * r, 0.3 * r), (0.7 * r, 1.1 * r)),
+        look="grey steel",
     )
     b.bore("carrier", b.cylinder(0.13 * r, (0, -r, 0), (0, r, 0)))
     b.part(
@@ -36,24 +34,19 @@ def disc_brake(b: ObjectBuilder, radius: float) -> None:
         b.cylinder(r, (0, -0.03 * r, 0), (0, 0.03 * r, 0)),
         b.cylinder(0.12 * r, (0, -0.2 * r, 0), (0, 0.4 * r, 0)),
         b.cylinder(0.35 * r, (0, -0.15 * r, 0), (0, 0, 0)),
-        material="steel",
+        look="steel",
     )
-    b.spin("disc", parent="carrier", axis=Y, pivot=(0, 0, 0))
+    b.spin("disc", "carrier", Y, (0, 0, 0))
     for k, s in enumerate((-1, 1)):
         b.part(
             f"pad_{k + 1}",
-            box(
-                (-0.25 * r, min(s * 0.06 * r, s * 0.18 * r), 0.72 * r),
-                (0.25 * r, max(s * 0.06 * r, s * 0.18 * r), 0.98 * r),
-            ),
-            material="rubber",
-            color="black",
+            slab(0.25 * r, (min(s * 0.06 * r, s * 0.18 * r), max(s * 0.06 * r, s * 0.18 * r)), (0.72 * r, 0.98 * r)),
+            look="black rubber",
         )
-        b.slide(f"pad_{k + 1}", parent="carrier", axis=-s * Y, upper=0.025 * r)
+        b.slide(f"pad_{k + 1}", "carrier", -s * Y, 0.025 * r)
 
 
 @kind(
-    "camshaft",
     words="cam shaft, valve train, cam shaft with followers",
     part_words={"shaft": "cam", "follower": "valve, tappet, pushrod, lifter"},
     followers=whole(1, 6),
@@ -63,10 +56,10 @@ def camshaft(b: ObjectBuilder, followers: int) -> None:
     L = 0.08 * followers + 0.06
     b.part(
         "frame",
-        box((-0.5 * L - 0.02, -0.06, 0), (0.5 * L + 0.02, 0.06, 0.012)),
-        [box((s * 0.5 * L - 0.012, -0.03, 0.01), (s * 0.5 * L + 0.012, 0.03, 0.22)) for s in (-1, 1)],
-        box((-0.5 * L, -0.03, 0.19), (0.5 * L, 0.03, 0.22)),
-        material="metal",
+        slab(0.5 * L + 0.02, 0.06, (0, 0.012)),
+        [slab((s * 0.5 * L - 0.012, s * 0.5 * L + 0.012), 0.03, (0.01, 0.22)) for s in (-1, 1)],
+        slab(0.5 * L, 0.03, (0.19, 0.22)),
+        look="metal",
     )
     b.bore("frame", b.cylinder(0.0108, (-L, 0, 0.08), (L, 0, 0.08)))
     b.part(
@@ -80,9 +73,9 @@ def camshaft(b: ObjectBuilder, followers: int) -> None:
             )
             for k, x in enumerate([0.08 * (k - 0.5 * (n - 1)) for k in range(n)])
         ],
-        material="steel",
+        look="steel",
     )
-    b.spin("shaft", parent="frame", axis=X, pivot=(0, 0, 0.08))
+    b.spin("shaft", "frame", X, (0, 0, 0.08))
     for k in range(n):
         x = 0.08 * (k - 0.5 * (n - 1))
         b.bore("frame", b.cylinder(0.0068, (x, 0, 0.15), (x, 0, 0.3)))
@@ -90,25 +83,20 @@ def camshaft(b: ObjectBuilder, followers: int) -> None:
             f"follower_{k + 1}",
             b.cylinder(0.006, (x, 0, 0.13), (x, 0, 0.25)),
             b.cylinder(0.016, (x, 0, 0.127), (x, 0, 0.133)),
-            material="steel",
+            look="steel",
         )
-        b.slide(f"follower_{k + 1}", parent="frame", axis=Z, lower=-0.008, upper=0.016)
+        b.slide(f"follower_{k + 1}", "frame", Z, 0.016, lower=-0.008)
 
 
-@kind(
-    "gear pump",
-    words="hydraulic gear pump",
-    part_words={"drive_gear": "shaft, driver", "idler": "gear"},
-    radius=length(0.03, 0.06),
-)
+@kind(words="hydraulic gear pump", part_words={"drive_gear": "shaft, driver", "idler": "gear"}, radius=(0.03, 0.06))
 def gear_pump(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "housing",
         b.cylinder(1.6 * r, (-0.85 * r, -0.5 * r, 0), (-0.85 * r, 0.4 * r, 0)),
         b.cylinder(1.6 * r, (0.85 * r, -0.5 * r, 0), (0.85 * r, 0.4 * r, 0)),
-        box((-0.85 * r, -0.5 * r, -1.6 * r), (0.85 * r, 0.4 * r, 1.6 * r)),
-        material="metal",
+        slab(0.85 * r, (-0.5 * r, 0.4 * r), 1.6 * r),
+        look="metal",
     )
     b.cut(
         "housing",
@@ -135,7 +123,7 @@ def gear_pump(b: ObjectBuilder, radius: float) -> None:
                 )
                 for a in [6.28318 * (k + (0.5 if s > 0 else 0)) / 10 for k in range(10)]
             ],
-            material="steel",
+            look="steel",
         )
-        b.spin(name, parent="housing", axis=s * Y, pivot=[s * 0.85 * r, 0, 0])
-    b.follow("idler", leader="drive_gear", multiplier=1)
+        b.spin(name, "housing", s * Y, [s * 0.85 * r, 0, 0])
+    b.follow("idler", "drive_gear", 1)

@@ -8,30 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.library.kind import choice, kind, whole
 from kinematify.generate.library.mechanisms import case, caster, legs, wheel
 from kinematify.generate.library.panels import grip
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "sideboard with sliding doors",
-    words="sliding door sideboard, sliding door cabinet",
-    width=length(1.0, 2.0),
-    height=length(0.5, 0.9),
-    depth=length(0.35, 0.5),
-)
+@kind(words="sliding door sideboard, sliding door cabinet", width=(1.0, 2.0), height=(0.5, 0.9), depth=(0.35, 0.5))
 def sideboard_with_sliding_doors(b: ObjectBuilder, width: float, height: float, depth: float) -> None:
     """Two panels that pass each other before a case."""
-    case(b, "case", lower=(-width / 2, 0, 0.1), upper=(width / 2, depth, height), opening=-Y, wall=0.02)
-    legs(b, "case", lower=(-width / 2, 0, 0), upper=(width / 2, depth, 0.105), thick=0.05)
+    case(b, "case", (-width / 2, 0, 0.1), (width / 2, depth, height), opening=-Y, wall=0.02)
+    legs(b, "case", (-width / 2, 0, 0), (width / 2, depth, 0.105), 0.05)
     b.part(
         "case",
-        box((-width / 2, -0.06, 0.1), (width / 2, 0.01, 0.12)),
-        box((-width / 2, -0.06, height - 0.02), (width / 2, 0.01, height)),
+        slab(width / 2, (-0.06, 0.01), (0.1, 0.12)),
+        slab(width / 2, (-0.06, 0.01), (height - 0.02, height)),
     )
     play1 = b.gap(0.02)
     for k, s in enumerate((-1, 1)):
@@ -52,15 +46,14 @@ def sideboard_with_sliding_doors(b: ObjectBuilder, width: float, height: float, 
                     (0.85 * s * width / 2, y, height / 2),
                 ),
             )
-        b.slide(f"door_{k}", parent="case", axis=-s * X, upper=width / 2 - 0.04)
+        b.slide(f"door_{k}", "case", -s * X, width / 2 - 0.04)
 
 
 @kind(
-    "standing desk",
     words="sit stand desk, height adjustable desk, adjustable desk, lifting desk",
-    width=length(1.0, 1.8),
-    depth=length(0.6, 0.8),
-    height=length(0.6, 0.75),
+    width=(1.0, 1.8),
+    depth=(0.6, 0.8),
+    height=(0.6, 0.75),
 )
 def standing_desk(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A top on two or one telescopic columns."""
@@ -68,46 +61,44 @@ def standing_desk(b: ObjectBuilder, width: float, depth: float, height: float) -
     for x in (-0.35 * width, 0.35 * width):
         b.part(
             "feet",
-            box((x - 0.04, -depth / 2 + 0.05, 0), (x + 0.04, depth / 2 - 0.05, 0.03)),
-            box((x - 0.04, -0.04, 0.02), (x + 0.04, 0.04, 0.55)),
-            material="steel",
+            slab((x - 0.04, x + 0.04), depth / 2 - 0.05, (0, 0.03)),
+            slab((x - 0.04, x + 0.04), 0.04, (0.02, 0.55)),
+            look="steel",
         )
-        b.bore("feet", box((x - 0.03 - g, -0.03 - g, 0.05), (x + 0.03 + g, 0.03 + g, 0.6)))
-        b.part("top", box((x - 0.03, -0.03, 0.1 if b.style.has_bore else 0.54), (x + 0.03, 0.03, height)))
-    b.part("feet", box((-0.35 * width, -0.02, 0.03), (0.35 * width, 0.02, 0.1)))
-    b.part("top", box((-width / 2, -depth / 2, height), (width / 2, depth / 2, height + 0.025)), material="wood")
-    b.slide("top", parent="feet", axis=Z, upper=b.draw(0.3, 0.5))
+        b.bore("feet", slab((x - 0.03 - g, x + 0.03 + g), 0.03 + g, (0.05, 0.6)))
+        b.part("top", slab((x - 0.03, x + 0.03), 0.03, (0.1 if b.style.has_bore else 0.54, height)))
+    b.part("feet", slab(0.35 * width, 0.02, (0.03, 0.1)))
+    b.part("top", slab(width / 2, depth / 2, (height, height + 0.025)), look="wood")
+    b.slide("top", "feet", Z, b.draw(0.3, 0.5))
 
 
 @kind(
-    "piano stool",
     words=(
         "swivel stool, bar stool, screw stool, music stool, stool, barstool, swivel bar stool, counter stool, pub "
         "stool, work stool, drafting stool, lab stool, vanity stool, saddle stool, kitchen stool, drum stool, drum "
         "throne, rotating stool, bar chair, artist stool, massage stool, doctor stool, dentist stool, shop stool, "
         "revolving stool, spinning stool, cobbler stool"
     ),
-    radius=length(0.15, 0.22),
-    height=length(0.4, 0.6),
+    radius=(0.15, 0.22),
+    height=(0.4, 0.6),
 )
 def piano_stool(b: ObjectBuilder, radius: float, height: float) -> None:
     """A seat that turns on its screw."""
-    b.part("base", b.cylinder(0.04, (0, 0, 0.1), (0, 0, height)), material="wood")
+    b.part("base", b.cylinder(0.04, 0.1, height), look="wood")
     n = b.count(3, 5)
     for a in np.arange(n) * 2 * pi / n:
         b.part("base", beam(0.04, 0.04, (0, 0, 0.2), (1.2 * radius * cos(a), 1.2 * radius * sin(a), 0.02)))
     g = b.gap(radius)
-    b.part("seat", b.cylinder(radius, (0, 0, height + g), (0, 0, height + b.draw(0.03, 0.1))))
+    b.part("seat", b.cylinder(radius, height + g, height + b.draw(0.03, 0.1)))
     if b.style.has_bore:
-        b.cut("base", b.cylinder(0.02 + 2 * g, (0, 0, 0.2), (0, 0, height + 0.01)))
-        b.part("seat", b.cylinder(0.02, (0, 0, 0.22), (0, 0, height + 0.02)))
-    b.spin("seat", parent="base", axis=Z, pivot=(0, 0, height))
+        b.cut("base", b.cylinder(0.02 + 2 * g, 0.2, height + 0.01))
+        b.part("seat", b.cylinder(0.02, 0.22, height + 0.02))
+    b.spin("seat", "base", Z, (0, 0, height))
 
 
 @kind(
-    "trundle bed",
     words="storage bed, captains bed, bed with drawers, pull out bed",
-    width=length(0.8, 1.2),
+    width=(0.8, 1.2),
     number=whole(1, 2, words="box, drawer"),
 )
 def trundle_bed(b: ObjectBuilder, width: float, number: int) -> None:
@@ -119,28 +110,22 @@ def trundle_bed(b: ObjectBuilder, width: float, number: int) -> None:
         box((0, 0, 0.3), (t, width, h)),
         box((0, 0, 0), (0.03, width, 0.9)),
         box((t - 0.03, 0, 0), (t, width, 0.7)),
-        material="wood",
+        look="wood",
     )
     for k, x in enumerate(spread(number, 0.04, t - 0.04)):
         half = (t - 0.1) / 2 / number
         g = b.gap(0.1) + 0.002
-        b.part(f"box_{k}", box((x - half, -0.01, 0.04), (x + half, 0.85 * width, 0.27)), material="wood")
+        b.part(f"box_{k}", box((x - half, -0.01, 0.04), (x + half, 0.85 * width, 0.27)), look="wood")
         if b.style.drawer == "tray":
             b.cut(f"box_{k}", box((x - half + 0.02, 0.01, 0.06), (x + half - 0.02, 0.85 * width - 0.02, 0.4)))
         b.part("bed", box((x - half, 0.85 * width + g, 0.1), (x + half, 0.85 * width + g + 0.02, 0.31)))
-        b.slide(f"box_{k}", parent="bed", axis=-Y, upper=0.6)
+        b.slide(f"box_{k}", "bed", -Y, 0.6)
 
 
-@kind(
-    "crib",
-    words="cot, baby crib, baby bed, baby cot, infant bed",
-    width=length(1.1, 1.4),
-    depth=length(0.6, 0.75),
-    height=length(0.8, 1.0),
-)
+@kind(words="cot, baby crib, baby bed, baby cot, infant bed", width=(1.1, 1.4), depth=(0.6, 0.75), height=(0.8, 1.0))
 def crib(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A cot with a side that slides down or swings out."""
-    b.part("cot", box((0, 0, 0.25), (width, depth, 0.3)), material="wood")
+    b.part("cot", box((0, 0, 0.25), (width, depth, 0.3)), look="wood")
     for x in (0, width):
         b.part("cot", box((x - 0.02, 0, 0), (x + 0.02, depth, height)))
     b.part("cot", box((0, depth - 0.03, 0.25), (width, depth, height)))
@@ -151,93 +136,71 @@ def crib(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     rails = [box((0.021 + g, -0.045, z), (width - 0.021 - g, -0.005, z + 0.04)) for z in (0.3, height - 0.04)]
     b.part("side", bars, rails)
     if b.maybe():
-        b.slide("side", parent="cot", axis=-Z, upper=0.25)
+        b.slide("side", "cot", -Z, 0.25)
     else:
-        b.hinge("side", parent="cot", axis=X, pivot=(width / 2, -0.025, 0.31), upper=1.5)
+        b.hinge("side", "cot", X, (width / 2, -0.025, 0.31), 1.5)
 
 
 @kind(
-    "bar cart",
     words=(
         "serving trolley, tea trolley, serving cart, tea cart, kitchen cart, kitchen trolley, hostess trolley, "
         "drinks trolley, drinks cart, dessert cart, service cart, service trolley, dish cart, utility cart, rolling "
         "cart"
     ),
-    width=length(0.5, 0.9),
-    depth=length(0.35, 0.5),
-    height=length(0.7, 0.95),
+    width=(0.5, 0.9),
+    depth=(0.35, 0.5),
+    height=(0.7, 0.95),
     kind=choice(("casters", "wheels")),
 )
 def bar_cart(b: ObjectBuilder, width: float, depth: float, height: float, kind: str) -> None:
     """Two trays on a frame with four wheels or casters, and a drawer."""
     foot = 0.1
-    legs(b, "frame", lower=(-width / 2, -depth / 2, foot), upper=(width / 2, depth / 2, height), thick=0.03)
+    legs(b, "frame", (-width / 2, -depth / 2, foot), (width / 2, depth / 2, height), 0.03)
     for z in (foot + 0.02, 0.55 * height, height - 0.05):
-        b.part("frame", box((-width / 2, -depth / 2, z), (width / 2, depth / 2, z + 0.03)), material="steel")
+        b.part("frame", slab(width / 2, depth / 2, (z, z + 0.03)), look="steel")
     corners = [(x, y) for x in (-width / 2 + 0.015, width / 2 - 0.015) for y in (-depth / 2 + 0.015, depth / 2 - 0.015)]
     for k, (x, y) in enumerate(corners):
         if kind == "casters":
-            caster(b, f"caster_{k}", parent="frame", top=(x, y, foot), high=foot)
+            caster(b, f"caster_{k}", "frame", (x, y, foot), foot)
         else:
             s = np.sign(y)
-            wheel(
-                b,
-                f"wheel_{k}",
-                parent="frame",
-                middle=(x, y + s * 0.03, 0.06),
-                radius=0.06,
-                wide=0.025,
-                out=s * Y,
-                axle=0.012,
-            )
+            wheel(b, f"wheel_{k}", "frame", (x, y + s * 0.03, 0.06), 0.06, 0.025, s * Y, axle=0.012)
             b.part("frame", box((x - 0.015, y - 0.012, 0.05), (x + 0.015, y + 0.012, foot + 0.01)))
 
 
-@kind(
-    "swivel bookcase",
-    words="rotating bookcase, revolving bookcase",
-    width=length(0.35, 0.5),
-    height=length(0.6, 1.4),
-    foot=length(0.04, 0.1),
-)
+@kind(words="rotating bookcase, revolving bookcase", width=(0.35, 0.5), height=(0.6, 1.4), foot=(0.04, 0.1))
 def swivel_bookcase(b: ObjectBuilder, width: float, height: float, foot: float) -> None:
     """A square bookcase that turns on its foot."""
-    b.part("foot", b.cylinder(0.45 * width, (0, 0, 0), (0, 0, foot)), material="wood")
+    b.part("foot", b.cylinder(0.45 * width, 0, foot), look="wood")
     g = b.gap(width)
-    b.part("case", box((-width / 2, -width / 2, foot + g), (width / 2, width / 2, height)), material="wood")
+    b.part("case", slab(width / 2, width / 2, (foot + g, height)), look="wood")
     for z in spread(3, foot, height):
         for s in (-1, 1):
             corner = (s * (width / 2 + 1), 0.02 - width / 2, z - 0.12 * height)
             b.cut("case", box(corner, (s * 0.02, width / 2 - 0.02, z + 0.12 * height)))
-    b.spin("case", parent="foot", axis=Z, pivot=(0, 0, foot))
+    b.spin("case", "foot", Z, (0, 0, foot))
 
 
-@kind(
-    "roller shutter cabinet",
-    words="tambour cabinet, roll front cabinet",
-    width=length(0.6, 1.2),
-    height=length(0.6, 1.8),
-)
+@kind(words="tambour cabinet, roll front cabinet", width=(0.6, 1.2), height=(0.6, 1.8))
 def roller_shutter_cabinet(b: ObjectBuilder, width: float, height: float) -> None:
     """A shutter of slats drawn as one plate that slides up or aside."""
     t = 0.4
-    case(b, "cabinet", lower=(-width / 2, 0, 0), upper=(width / 2, t, height), opening=-Y, wall=0.03)
+    case(b, "cabinet", (-width / 2, 0, 0), (width / 2, t, height), opening=-Y, wall=0.03)
     g = b.gap(0.02)
     z0 = 0.03 + g
     z1 = height * b.draw(0.45, 0.95)
-    b.part("shutter", box((-width / 2 + 0.005 + g, -0.015 - g, z0), (width / 2 - 0.005 - g, -g, z1)))
+    b.part("shutter", slab(width / 2 - 0.005 - g, (-0.015 - g, -g), (z0, z1)))
     for z in spread(int((z1 - z0) / 0.05), z0, z1):
         b.part("shutter", b.cylinder(0.008, (-width / 2 + 0.01, -0.015 - g, z), (width / 2 - 0.01, -0.015 - g, z)))
-    grip(b, "shutter", at=(0, -0.015 - g, z0 + 0.06), out=-Y, along=X, length=0.12)
-    b.slide("shutter", parent="cabinet", axis=Z, upper=0.7 * (z1 - z0))
+    grip(b, "shutter", (0, -0.015 - g, z0 + 0.06), -Y, X, 0.12)
+    b.slide("shutter", "cabinet", Z, 0.7 * (z1 - z0))
 
 
 @kind(
-    "bunk bed",
     words="double decker bed",
     part_words={"drawer": "bed box, box"},
-    width=length(0.8, 1.0),
-    height=length(1.5, 1.8),
+    width=(0.8, 1.0),
+    height=(1.5, 1.8),
     number=whole(1, 3, default=2, words="drawer, bed box, storage box"),
 )
 def bunk_bed(b: ObjectBuilder, width: float, height: float, number: int) -> None:
@@ -249,20 +212,20 @@ def bunk_bed(b: ObjectBuilder, width: float, height: float, number: int) -> None
         [box((x, y, 0), (x + 0.06, y + 0.06, height)) for x in (0, t - 0.06) for y in (0, width - 0.06)],
         [box((0, 0, z), (t, width, z + 0.1)) for z in (0.35, up)],
         [box((0, y, height - 0.12), (t, y + 0.03, height - 0.02)) for y in (0, width - 0.03)],
-        material="wood",
+        look="wood",
     )
     x = t - 0.55
     b.part(
         "ladder",
         [box((x + a, -0.035, 0), (x + a + 0.04, -0.0005, height)) for a in (0, 0.36)],
         [b.cylinder(0.015, (x + 0.02, -0.018, z), (x + 0.38, -0.018, z)) for z in spread(5, 0.1, height - 0.2)],
-        material="wood",
+        look="wood",
     )
-    b.fix("ladder", parent="bed")
+    b.fix("ladder", "bed")
     for k, x in enumerate(spread(number, 0.08, t - 0.6)):
         half = (t - 0.74) / 2 / number
         g = b.gap(0.1) + 0.002
-        b.part(f"drawer_{k}", box((x - half, 0.005, 0.04), (x + half, 0.85 * width, 0.3)), material="wood")
+        b.part(f"drawer_{k}", box((x - half, 0.005, 0.04), (x + half, 0.85 * width, 0.3)), look="wood")
         b.cut(f"drawer_{k}", box((x - half + 0.02, 0.025, 0.06), (x + half - 0.02, 0.85 * width - 0.02, 0.4)))
         b.part("bed", box((x - half, 0.85 * width + g, 0.1), (x + half, 0.85 * width + g + 0.02, 0.36)))
-        b.slide(f"drawer_{k}", parent="bed", axis=-Y, upper=0.5)
+        b.slide(f"drawer_{k}", "bed", -Y, 0.5)

@@ -5,19 +5,18 @@ from __future__ import annotations
 from math import cos, sin
 from typing import TYPE_CHECKING
 
-from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import knob
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
-    "jigsaw",
     words="jig saw, sabre saw, saber saw",
     part_words={"base_plate": "base, shoe, sole, plate, sole plate", "trigger": "switch"},
-    size=length(0.9, 1.2),
+    size=(0.9, 1.2),
 )
 def jigsaw(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
@@ -27,7 +26,7 @@ def jigsaw(b: ObjectBuilder, size: float) -> None:
         box(p(-0.1, -0.02, 0.14), p(0.08, 0.02, 0.175)),
         box(p(-0.1, -0.02, 0.09), p(-0.06, 0.02, 0.16)),
         box(p(0.05, -0.02, 0.09), p(0.08, 0.02, 0.16)),
-        color="green",
+        look="green",
     )
     b.bore("body", b.cylinder(0.006 * size, p(0.075, 0, 0), p(0.075, 0, 0.085)))
     b.cut("body", box(p(-0.001, -0.009, 0.13), p(0.031, 0.009, 0.152)))
@@ -36,57 +35,50 @@ def jigsaw(b: ObjectBuilder, size: float) -> None:
         box(p(-0.09, -0.04, 0), p(0.07, 0.04, 0.004)),
         b.cylinder(0.012 * size, p(-0.06, 0, 0.016), p(0.04, 0, 0.016)),
         box(p(-0.06, -0.008, 0.003), p(0.04, 0.008, 0.016)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("base_plate", parent="body", axis=X, pivot=p(0, 0, 0.016), lower=-0.3, upper=0.3)
+    b.hinge("base_plate", "body", X, p(0, 0, 0.016), 0.3, lower=-0.3)
     b.part(
         "blade",
         b.cylinder(0.005 * size, p(0.075, 0, -0.01), p(0.075, 0, 0.07)),
         box(p(0.07, -0.001, -0.09), p(0.08, 0.001, 0.0)),
-        material="steel",
+        look="steel",
     )
-    b.slide("blade", parent="body", axis=Z, lower=-0.008, upper=0.012)
-    b.part("trigger", box(p(0.0, -0.008, 0.128), p(0.03, 0.008, 0.142)), color="black")
-    b.slide("trigger", parent="body", axis=Z, upper=0.006)
+    b.slide("blade", "body", Z, 0.012, lower=-0.008)
+    b.part("trigger", box(p(0.0, -0.008, 0.128), p(0.03, 0.008, 0.142)), look="black")
+    b.slide("trigger", "body", Z, 0.006)
 
 
 @kind(
-    "hedge trimmer",
     words="hedge cutter, electric hedge trimmer",
     part_words={"blade": "knife, cutter bar", "trigger": "switch", "handle": "front handle"},
     details={"handle": 2, "guard": 1},
-    length=length(0.45, 0.7),
+    length=(0.45, 0.7),
 )
 def hedge_trimmer(b: ObjectBuilder, length: float) -> None:
     b.part(
         "body",
-        box((-0.15, -0.045, -0.05), (0.1, 0.045, 0.05)),
+        slab((-0.15, 0.1), 0.045, 0.05),
         beam(0.03, 0.03, (-0.14, 0, 0.02), (-0.32, 0, 0.02)),
         [b.rod(0.01, (0, s * 0.045, 0), (0, s * 0.09, 0.12)) for s in (-1, 1)],
         b.rod(0.01, (0, -0.09, 0.12), (0, 0.09, 0.12)),
-        box((0.1, -0.035, -0.006), (0.1 + length, 0.035, -0.001)),
-        color="orange",
+        slab((0.1, 0.1 + length), 0.035, (-0.006, -0.001)),
+        look="orange",
     )
-    b.cut("body", box((-0.251, -0.009, 0), (-0.199, 0.009, 0.018)))
+    b.cut("body", slab((-0.251, -0.199), 0.009, (0, 0.018)))
     b.part(
         "blade",
-        box((0.115, -0.02, 0.0), (0.1 + length, 0.02, 0.005)),
-        [
-            box((0.13 + k * 0.05, -0.045, 0.0), (0.14 + k * 0.05, 0.045, 0.005))
-            for k in range(int((length - 0.06) / 0.05))
-        ],
-        material="steel",
+        slab((0.115, 0.1 + length), 0.02, (0.0, 0.005)),
+        [slab((0.13 + k * 0.05, 0.14 + k * 0.05), 0.045, (0.0, 0.005)) for k in range(int((length - 0.06) / 0.05))],
+        look="steel",
     )
-    b.slide("blade", parent="body", axis=X, lower=-0.01, upper=0.01)
-    b.part("trigger", box((-0.25, -0.008, -0.008), (-0.2, 0.008, 0.008)), color="black")
-    b.slide("trigger", parent="body", axis=Z, upper=0.006)
+    b.slide("blade", "body", X, 0.01, lower=-0.01)
+    b.part("trigger", slab((-0.25, -0.2), 0.008, 0.008), look="black")
+    b.slide("trigger", "body", Z, 0.006)
 
 
 @kind(
-    "nail gun",
-    words="nailer, brad nailer",
-    part_words={"magazine": "nail magazine", "nose": "muzzle, safety tip"},
-    size=length(0.8, 1.2),
+    words="nailer, brad nailer", part_words={"magazine": "nail magazine", "nose": "muzzle, safety tip"}, size=(0.8, 1.2)
 )
 def nail_gun(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
@@ -96,23 +88,18 @@ def nail_gun(b: ObjectBuilder, size: float) -> None:
         beam(0.035 * size, 0.045 * size, p(-0.02, 0, 0.2), p(-0.2, 0, 0.19), Y),
         box(p(-0.2, -0.022, 0.03), p(-0.16, 0.022, 0.2)),
         box(p(-0.17, -0.022, 0.03), p(-0.03, 0.022, 0.036)),
-        color="yellow",
+        look="yellow",
     )
     b.bore("body", b.cylinder(0.012 * size, p(0.01, 0, 0), p(0.01, 0, 0.1)))
-    b.part("nose", b.cylinder(0.011 * size, p(0.01, 0, -0.03), p(0.01, 0, 0.08)), material="steel")
-    b.slide("nose", parent="body", axis=Z, upper=0.012)
-    b.part("trigger", box(p(-0.075, -0.009, 0.145), p(-0.05, 0.009, 0.17)), color="black")
-    b.slide("trigger", parent="body", axis=Z, upper=0.006)
-    b.part("magazine", box(p(-0.155, -0.015, 0.037), p(-0.045, 0.015, 0.06)), material="steel")
-    b.slide("magazine", parent="body", axis=-Y, upper=0.03)
+    b.part("nose", b.cylinder(0.011 * size, p(0.01, 0, -0.03), p(0.01, 0, 0.08)), look="steel")
+    b.slide("nose", "body", Z, 0.012)
+    b.part("trigger", box(p(-0.075, -0.009, 0.145), p(-0.05, 0.009, 0.17)), look="black")
+    b.slide("trigger", "body", Z, 0.006)
+    b.part("magazine", box(p(-0.155, -0.015, 0.037), p(-0.045, 0.015, 0.06)), look="steel")
+    b.slide("magazine", "body", -Y, 0.03)
 
 
-@kind(
-    "glue gun",
-    words="hot glue gun, craft glue gun",
-    part_words={"trigger": "lever"},
-    size=length(0.8, 1.3),
-)
+@kind(words="hot glue gun, craft glue gun", part_words={"trigger": "lever"}, size=(0.8, 1.3))
 def glue_gun(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -120,21 +107,20 @@ def glue_gun(b: ObjectBuilder, size: float) -> None:
         box(p(-0.08, -0.018, 0.1), p(0.07, 0.018, 0.15)),
         b.cone(0.012 * size, 0.003 * size, p(0.068, 0, 0.125), p(0.11, 0, 0.125)),
         beam(0.035 * size, 0.03 * size, p(-0.05, 0, 0.11), p(-0.08, 0, 0.01), Y),
-        color="blue",
+        look="blue",
     )
     b.bore("body", b.cylinder(0.0065 * size, p(-0.1, 0, 0.125), p(0, 0, 0.125)))
-    b.part("stick", b.cylinder(0.0055 * size, p(-0.14, 0, 0.125), p(-0.01, 0, 0.125)), color="white")
-    b.slide("stick", parent="body", axis=X, lower=-0.04, upper=0.008)
+    b.part("stick", b.cylinder(0.0055 * size, p(-0.14, 0, 0.125), p(-0.01, 0, 0.125)), look="white")
+    b.slide("stick", "body", X, 0.008, lower=-0.04)
     b.cut("body", box(p(-0.013, -0.008, 0), p(0.01, 0.008, 0.112)))
-    b.part("trigger", beam(0.014 * size, 0.012 * size, p(0, 0, 0.103), p(-0.02, 0, 0.03), Y), color="black")
-    b.hinge("trigger", parent="body", axis=Y, pivot=p(0, 0, 0.103), upper=0.25)
+    b.part("trigger", beam(0.014 * size, 0.012 * size, p(0, 0, 0.103), p(-0.02, 0, 0.03), Y), look="black")
+    b.hinge("trigger", "body", Y, p(0, 0, 0.103), 0.25)
 
 
 @kind(
-    "scroll saw",
     words="fret saw, fretsaw, scrollsaw, fretsaw machine",
     part_words={"knob": "speed knob, dial", "arm": "upper arm"},
-    size=length(0.9, 1.2),
+    size=(0.9, 1.2),
 )
 def scroll_saw(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
@@ -144,56 +130,46 @@ def scroll_saw(b: ObjectBuilder, size: float) -> None:
         box(p(-0.3, -0.05, 0.05), p(-0.22, 0.05, 0.36)),
         box(p(-0.3, -0.03, 0.32), p(0.16, 0.03, 0.37)),
         box(p(0.02, -0.1, 0.055), p(0.06, -0.085, 0.148)),
-        material="steel",
-        color="blue",
+        look="blue steel",
     )
     b.bore("base", b.cylinder(0.007 * size, p(0.14, 0, 0.02), p(0.14, 0, 0.35)))
     b.part(
         "table",
         box(p(-0.05, -0.14, 0.165), p(0.22, 0.14, 0.175)),
         box(p(0.01, -0.08, 0.1), p(0.07, -0.07, 0.166)),
-        material="metal",
+        look="metal",
     )
     b.cut("table", box(p(0.128, -0.07, 0), p(0.152, 0.07, 1)))
-    b.hinge("table", parent="base", axis=X, pivot=p(0.04, -0.075, 0.13), lower=-0.1, upper=0.2)
+    b.hinge("table", "base", X, p(0.04, -0.075, 0.13), 0.2, lower=-0.1)
     b.part(
         "blade",
         b.cylinder(0.006 * size, p(0.14, 0, 0.29), p(0.14, 0, 0.34)),
         box(p(0.138, -0.0008, 0.05), p(0.142, 0.0008, 0.3)),
-        material="steel",
+        look="steel",
     )
-    b.slide("blade", parent="base", axis=Z, lower=-0.008, upper=0.006)
-    knob(
-        b,
-        "knob",
-        parent="base",
-        at=[0.05 * size, -0.12 * size, 0.03 * size],
-        radius=0.015 * size,
-        high=0.015 * size,
-        out=-Y,
-    )
+    b.slide("blade", "base", Z, 0.006, lower=-0.008)
+    knob(b, "knob", "base", [0.05 * size, -0.12 * size, 0.03 * size], 0.015 * size, -Y, high=0.015 * size)
 
 
 @kind(
-    "paint roller",
     words="roller brush, lint roller, wallpaper roller, ink roller, brayer",
     part_words={"roller": "roll, sleeve"},
     details={"handle": 1},
-    width=length(0.1, 0.28),
+    width=(0.1, 0.28),
 )
 def paint_roller(b: ObjectBuilder, width: float) -> None:
     b.part(
         "handle",
-        b.cylinder(0.014, (0, 0, 0), (0, 0, 0.13)),
-        b.rod(0.004, (0, 0, 0.12), (0, 0, 0.2)),
+        b.cylinder(0.014, 0, 0.13),
+        b.rod(0.004, 0.12, 0.2),
         b.rod(0.004, (0, 0, 0.2), (-0.5 * width - 0.02, 0, 0.23)),
         b.rod(0.004, (-0.5 * width - 0.02, 0, 0.23), (-0.5 * width - 0.02, 0, 0.3)),
         b.cylinder(0.004, (-0.5 * width - 0.022, 0, 0.3), (0.5 * width, 0, 0.3)),
-        color="red",
+        look="red",
     )
-    b.part("roller", b.cylinder(0.025, (-0.5 * width, 0, 0.3), (0.5 * width, 0, 0.3)), color="white")
+    b.part("roller", b.cylinder(0.025, (-0.5 * width, 0, 0.3), (0.5 * width, 0, 0.3)), look="white")
     b.cut("roller", b.cylinder(0.0048, (-width, 0, 0.3), (width, 0, 0.3)))
-    b.spin("roller", parent="handle", axis=X, pivot=(0, 0, 0.3))
+    b.spin("roller", "handle", X, (0, 0, 0.3))
 
 
 @kind(
@@ -202,33 +178,24 @@ def paint_roller(b: ObjectBuilder, width: float) -> None:
     title="ratchet screwdriver",
     part_words={"shaft": "bit, blade, tip, shank"},
     details={"handle": 1},
-    length=length(0.16, 0.3),
+    length=(0.16, 0.3),
 )
 def ratchet_screwdriver(b: ObjectBuilder, length: float) -> None:
     b.part(
-        "handle",
-        b.cylinder(0.016, (0, 0, 0.55 * length), (0, 0, length)),
-        b.cylinder(0.013, (0, 0, 0.5 * length), (0, 0, 0.56 * length)),
-        color="red",
+        "handle", b.cylinder(0.016, 0.55 * length, length), b.cylinder(0.013, 0.5 * length, 0.56 * length), look="red"
     )
-    b.bore("handle", b.cylinder(0.0056, (0, 0, 0), (0, 0, 0.75 * length)))
-    b.part(
-        "shaft",
-        b.cylinder(0.005, (0, 0, 0.01), (0, 0, 0.7 * length)),
-        box((-0.004, -0.001, 0), (0.004, 0.001, 0.02)),
-        material="steel",
-    )
-    b.spin("shaft", parent="handle", axis=Z, pivot=(0, 0, 0))
+    b.bore("handle", b.cylinder(0.0056, 0, 0.75 * length))
+    b.part("shaft", b.cylinder(0.005, 0.01, 0.7 * length), slab(0.004, 0.001, (0, 0.02)), look="steel")
+    b.spin("shaft", "handle", Z, (0, 0, 0))
 
 
 @kind(
-    "folding ruler",
     words="folding rule, carpenter's rule, zigzag rule, zigzag ruler, folding yardstick",
     part_words={"segment": "link, section, element, piece"},
     segments=whole(2, 10),
 )
 def folding_ruler(b: ObjectBuilder, segments: int) -> None:
-    b.part("segment_1", beam(0.016, 0.003, (0, 0, 0.002), (0.23, 0, 0.002)), material="wood", color="yellow")
+    b.part("segment_1", beam(0.016, 0.003, (0, 0, 0.002), (0.23, 0, 0.002)), look="yellow wood")
     for k in range(1, segments):
         x = 0.22 if k % 2 else 0.01
         z = 0.002 + 0.004 * k
@@ -236,18 +203,16 @@ def folding_ruler(b: ObjectBuilder, segments: int) -> None:
             f"segment_{k + 1}",
             beam(0.016, 0.003, (0, 0, z), (0.23, 0, z)),
             b.cylinder(0.003, (x, 0, z - 0.0025), (x, 0, z)),
-            material="wood",
-            color="yellow",
+            look="yellow wood",
         )
-        b.hinge(f"segment_{k + 1}", parent=f"segment_{k}", axis=(1 if k % 2 else -1) * Z, pivot=[x, 0, z], upper=3.1)
+        b.hinge(f"segment_{k + 1}", f"segment_{k}", (1 if k % 2 else -1) * Z, [x, 0, z], 3.1)
 
 
 @kind(
-    "sextant",
     words="octant, quadrant",
     part_words={"arm": "index arm, index, alidade"},
     details={"telescope": 1, "arc": 1},
-    size=length(0.9, 1.2),
+    size=(0.9, 1.2),
 )
 def sextant(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
@@ -265,8 +230,8 @@ def sextant(b: ObjectBuilder, size: float) -> None:
         box(p(-0.06, 0, 0.1), p(-0.05, 0.025, 0.12)),
         box(p(0.01, 0, 0.1), p(0.03, 0.025, 0.12)),
         b.rod(0.004 * size, p(-0.07, 0, 0.1), p(0.07, 0, 0.1)),
-        material="brass",
+        look="brass",
     )
-    b.part("arm", beam(0.03 * size, 0.004 * size, p(0, -0.0105, 0.225), p(0, -0.0105, -0.03), Y), material="brass")
+    b.part("arm", beam(0.03 * size, 0.004 * size, p(0, -0.0105, 0.225), p(0, -0.0105, -0.03), Y), look="brass")
     b.cut("arm", b.cylinder(0.0106 * size, p(0, -1, 0.2), p(0, 1, 0.2)))
-    b.hinge("arm", parent="frame", axis=Y, pivot=p(0, 0, 0.2), lower=-0.5, upper=0.5)
+    b.hinge("arm", "frame", Y, p(0, 0, 0.2), 0.5, lower=-0.5)

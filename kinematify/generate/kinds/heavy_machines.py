@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.generate.kinds.limbs import track_ring, track_top, tracked, turntable
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.procedural.pieces.bearing_pieces import bent_fork, fork_room, stub
-from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, off, rod, union, vector
+from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, off, rod, slab, union, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "excavator",
     walls=180,
     words="digger, backhoe, mini excavator, power shovel, toy excavator, toy digger, crawler excavator",
     material="steel",
@@ -62,9 +61,9 @@ def excavator(
         cab = 0.42 * tracks_length
         w.add(
             "house",
-            box((-half, -0.8 * long, low), (half, long, top)),
+            slab(half, (-0.8 * long, long), (low, top)),
             box((-half, -0.75 * long, top - 0.001), (-0.2 * tracks_width, 0.1 * long, top + cab)),
-            box((-half, 0.25 * long, top - 0.001), (half, 0.7 * long, top + 0.6 * cab)),
+            slab(half, (0.25 * long, 0.7 * long), (top - 0.001, top + 0.6 * cab)),
             cylinder(min(half, 0.5 * long), (0, 0.55 * long, low), (0, 0.55 * long, top + 0.4 * cab)),
         )
         window = box((-2.0, -0.68 * long, top + 0.45 * cab), (-half + 0.01, 0.02 * long, top + 0.92 * cab))
@@ -89,7 +88,7 @@ def excavator(
             box((x - 0.05 * size, -0.65 * outer, lip - 1.2 * wall), (x + 0.05 * size, -0.25 * outer, lip - 0.2 * wall))
             for x in np.linspace(-0.8, 0.8, 4) * half
         ]
-        ear = box((-0.6 * radius, -0.6 * radius, start), (0.6 * radius, 0.6 * radius, start + 2.5 * wall))
+        ear = slab(0.6 * radius, 0.6 * radius, (start, start + 2.5 * wall))
         return union(shell, ear, *teeth)
 
     def along(lean: float) -> FloatArray:
@@ -130,7 +129,7 @@ def excavator(
             thick = 1.5 * radius if name == "boom" else radius
             beams = (beam_(start, bend, radius, thick), beam_(bend, stop, radius, thick, swap=True))
             w.body(name, tongue, beams)
-        w.turns(name, parent=parent, axis=(-1, 0, 0), pivot=pivot_2, limits=swings[name], rest=open)
+        w.turns(name, parent, (-1, 0, 0), pivot_2, swings[name], rest=open)
         parent = name
         below = last
         pivot_2 = end
@@ -138,7 +137,6 @@ def excavator(
 
 
 @kind(
-    "crane",
     words=(
         "tower crane, mobile crane, construction crane, toy crane, harbor crane, dock crane, truck crane, toy tower "
         "crane, building crane"
@@ -168,9 +166,9 @@ def crane(
         at = half - post
         solids = [box((x - post, y - post, low), (x + post, y + post, high)) for x in (-at, at) for y in (-at, at)]
         for z in np.linspace(low, high - 2.0 * post, max(3, min(16, int((high - low) / (3.0 * half))))):
-            frame = box((-half, -half, z), (half, half, z + post))
+            frame = slab(half, half, (z, z + post))
             solids = [*solids, frame - box((post - at, post - at, -1.0), (at - post, at - post, high + 1.0))]
-        return [*solids, box((-half, -half, high - post), (half, half, high + 0.001))]
+        return [*solids, slab(half, half, (high - post, high + 0.001))]
 
     # Two stiff ropes of `length` below a point of the parent, tied at both ends, and a hook block on them.
     def hook_of(parent: str, top: FloatArray, half: float, length: float) -> None:
@@ -190,19 +188,19 @@ def crane(
         hook = [rod(0.13 * size, one, other, segments=16) for one, other in pairwise(points)]
         w.body("hook", block, hook, material="steel", color="yellow")
         travel = length - 0.6 * half - 2.0 * clearance - 2.4 * size - 3.0 * rope
-        w.slides("hook", parent=parent, axis=(0, 0, -1), pivot=start, limits=(0.0, travel), rest=open)
+        w.slides("hook", parent, (0, 0, -1), start, (0.0, travel), rest=open)
 
     # A square bar along z, from `deep` on hollow and open at its end if `inner` is above zero.
     def tube_(half: float, start: float, end: float, inner: float, deep: float) -> Manifold:
-        bar = box((-half, -half, start), (half, half, end))
-        return bar - box((-inner, -inner, deep), (inner, inner, end + 1.0)) if inner else bar
+        bar = slab(half, half, (start, end))
+        return bar - slab(inner, inner, (deep, end + 1.0)) if inner else bar
 
     if kind == "tower":
         # Foot, mast, and a jib that turns on it with a trolley and a hook.
         half = min(0.02 * height + 0.01 * jib, 0.05 * jib, 0.04 * height)
         level = height - 7.0 * half
         foot = 0.12 * height + 2.0 * half
-        w.body("tower", box((-foot, -foot, 0), (foot, foot, 0.02 * height)), mast(half, 0.01 * height, level))
+        w.body("tower", slab(foot, foot, (0, 0.02 * height)), mast(half, 0.01 * height, level))
         pivot = (0.0, 0.0, level + half)
         boss, hole, rotor = stub(pivot, (0, 0, 1), 1.5 * half, clearance, length=half)
         w.add("tower", boss)
@@ -213,25 +211,25 @@ def crane(
         w.body(
             "jib",
             rotor,
-            box((-half, -half, pivot[2] + 0.9 * half), (half, half, height)),
-            box((-thick, -jib, beam), (thick, counter, beam + 2.0 * thick)),
-            box((-1.2 * half, 0.7 * counter, beam - 2.0 * half), (1.2 * half, 0.98 * counter, beam + 2.2 * thick)),
+            slab(half, half, (pivot[2] + 0.9 * half, height)),
+            slab(thick, (-jib, counter), (beam, beam + 2.0 * thick)),
+            slab(1.2 * half, (0.7 * counter, 0.98 * counter), (beam - 2.0 * half, beam + 2.2 * thick)),
             box((half - 0.001, -2.5 * half, beam - 1.5 * half), (2.6 * half, half, beam + half)),
             [rod(0.12 * half, (0, 0, height), (0, y, beam + thick), segments=12) for y in (-0.7 * jib, 0.9 * counter)],
         )
-        w.turns("jib", parent="tower", axis=(0, 0, 1), pivot=pivot)
+        w.turns("jib", "tower", (0, 0, 1), pivot)
         # A trolley around the jib, with a rope on which a hook is lowered.
         wall = 0.35 * half
         long = 1.5 * half
         y = -3.2 * half - long
         gap = thick + clearance
         high = beam + 2.0 * thick + clearance
-        block = box((-gap - wall, y - long, beam - clearance - wall), (gap + wall, y + long, high + wall))
-        inner = box((-gap, -2.0 * jib, beam - clearance), (gap, 1.0, high))
-        slot = box((-0.3 * half, -2.0 * jib, high - 0.001), (0.3 * half, 1.0, high + 1.0))
+        block = slab(gap + wall, (y - long, y + long), (beam - clearance - wall, high + wall))
+        inner = slab(gap, (-2.0 * jib, 1.0), (beam - clearance, high))
+        slot = slab(0.3 * half, (-2.0 * jib, 1.0), (high - 0.001, high + 1.0))
         w.body("trolley", block - inner - slot)
         travel = 0.98 * jib - 3.2 * half - 2.0 * long
-        w.slides("trolley", parent="jib", axis=(0, -1, 0), pivot=(0, y, beam), limits=(0.0, travel), rest=open)
+        w.slides("trolley", "jib", (0, -1, 0), (0, y, beam), (0.0, travel), rest=open)
         top = beam - clearance - 0.5 * wall
         hook_of("trolley", vector(0.0, y, top), half=half, length=0.75 * beam)
     elif kind == "mobile":
@@ -251,12 +249,12 @@ def crane(
         radius = 0.14 * tracks_width
         w.add(
             "house",
-            box((-half_2, -0.7 * long_2, low), (half_2, long_2, top_2)),
+            slab(half_2, (-0.7 * long_2, long_2), (low, top_2)),
             box(
                 (-half_2, -0.7 * long_2, top_2 - 0.001),
                 (-0.26 * tracks_width, 0.2 * long_2, top_2 + 0.3 * tracks_length),
             ),
-            box((-half_2, 0.6 * long_2, top_2 - 0.001), (half_2, long_2, top_2 + 0.2 * tracks_length)),
+            slab(half_2, (0.6 * long_2, long_2), (top_2 - 0.001, top_2 + 0.2 * tracks_length)),
         )
         pivot_2 = vector(0.0, 0.1 * long_2, top_2 + 2.0 * radius)
         forked, tongue = bent_fork(pivot_2, (0.0, lean), 2.4 * radius, radius, clearance)
@@ -274,18 +272,18 @@ def crane(
             return [solid.rotate((degrees(lean), 0, 0)).translate(pivot_2) for solid in solids]
 
         w.body("boom", tongue, placed(tube_(half_3, start, long_3, half_3 - wall_2 if sections else 0.0, deep)))
-        w.turns("boom", parent="house", axis=(-1, 0, 0), pivot=pivot_2, limits=rises, rest=open)
+        w.turns("boom", "house", (-1, 0, 0), pivot_2, rises, rest=open)
         parent = "boom"
         for k in range(sections):
             half_3 = half_3 - (wall_2 + gap_2)
             start, deep, long_3 = (deep + gap_2, deep + gap_2 + wall_2, long_3 + 1.5 * wall_2)
             name = f"section_{k + 1}"
             w.body(name, placed(tube_(half_3, start, long_3, half_3 - wall_2 if k + 1 < sections else 0.0, deep)))
-            w.slides(name, parent=parent, axis=along, pivot=pivot_2, limits=(0.0, 0.75 * (long_3 - start)), rest=open)
+            w.slides(name, parent, along, pivot_2, (0.0, 0.75 * (long_3 - start)), rest=open)
             parent = name
         tip = pivot_2 + (long_3 + 0.8 * half_3) * along
         jut = off(tip, 0, -2.6 * radius, 0)
-        head = box((-0.8 * half_3, -0.8 * half_3, long_3 - 0.001), (0.8 * half_3, 0.8 * half_3, long_3 + 1.6 * half_3))
+        head = slab(0.8 * half_3, 0.8 * half_3, (long_3 - 0.001, long_3 + 1.6 * half_3))
         w.add(
             parent,
             placed(head),
@@ -297,7 +295,6 @@ def crane(
 
 
 @kind(
-    "tracked tree",
     words=(
         "tracked robot tree, robot tree, tracked robot, tree on tracks, tree of links, linkage tree, tree "
         "linkage, kinematic tree, tree robot, branching robot"
@@ -344,7 +341,7 @@ def tracked_tree(
     turntable(w, clearance, "trunk", "tracks", tracks_length, tracks_width)
     low = tracks_top - 0.2 * tracks_ring
     its_ring = max(2.5 * joint_radius, 2.1 * joint_radius / sin(pi / max(branches, 3)))
-    w.add("trunk", cylinder(max(1.6 * joint_radius, 0.3 * its_ring), (0, 0, low), (0, 0, low + trunk)))
+    w.add("trunk", cylinder(max(1.6 * joint_radius, 0.3 * its_ring), low, low + trunk))
     for k in range(branches):
         # An arm of the trunk, and links one after the other; built towards -y and then turned about the trunk.
         angle = 360.0 * k / branches
@@ -373,7 +370,7 @@ def tracked_tree(
             w.add(parent, turned(forked))
             bar = cylinder(0.7 * joint_radius, pivot + 1.6 * joint_radius * along(above), stop, segments=20)
             w.body(name, turned(tongue, bar, *([ball(1.3 * joint_radius, end, segments=20)] if last else [])))
-            w.turns(name, parent=parent, axis=turn @ (-1.0, 0.0, 0.0), pivot=turn @ pivot, limits=(-swing, swing))
+            w.turns(name, parent, turn @ (-1.0, 0.0, 0.0), turn @ pivot, (-swing, swing))
             parent = name
             pivot = end
             below = above

@@ -6,26 +6,20 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "door handle",
-    words="lever handle, door lever, door fitting, lock fitting",
-    size=length(0.9, 1.1),
-)
+@kind("door handle", words="lever handle, door lever, door fitting, lock fitting", size=(0.9, 1.1))
 def lever_handle(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
-    b.part("plate", box(p(-0.022, 0, -0.12), p(0.022, 0.008, 0.12)), material="brass")
-    lever(
-        b, "lever", parent="plate", at=p(0, 0, 0.05), out=-Y, along=X, length=0.12 * size, reach=0.6, material="brass"
-    )
+    b.part("plate", box(p(-0.022, 0, -0.12), p(0.022, 0.008, 0.12)), look="brass")
+    lever(b, "lever", "plate", p(0, 0, 0.05), -Y, X, 0.12 * size, reach=0.6, material="brass")
     b.bore("plate", b.cylinder(0.008 * size, p(0, -0.1, -0.05), p(0, 0.1, -0.05)))
     b.part(
         "key",
@@ -33,192 +27,154 @@ def lever_handle(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.003 * size, p(0, -0.02, -0.05), p(0, 0.03, -0.05)),
         b.torus(0.012 * size, 0.003 * size, p(0, -0.033, -0.05), X),
         box(p(-0.002, 0.018, -0.062), p(0.002, 0.03, -0.05)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("key", parent="plate", axis=-Y, pivot=p(0, 0, -0.05), upper=1.57, lower=-1.57)
+    b.hinge("key", "plate", -Y, p(0, 0, -0.05), 1.57, lower=-1.57)
 
 
-@kind(
-    "mortise lock",
-    words="rim lock, latch lock, dead lock, spring latch, night latch, deadbolt, door lock",
-    size=length(0.8, 1.2),
-)
+@kind(words="rim lock, latch lock, dead lock, spring latch, night latch, deadbolt, door lock", size=(0.8, 1.2))
 def mortise_lock(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "case",
         box(p(-0.04, -0.012, -0.08), p(0.04, 0.012, 0.08)),
         box(p(0.04, -0.015, -0.1), p(0.045, 0.015, 0.1)),
-        material="steel",
+        look="steel",
     )
     b.cut(
         "case",
         box(p(-0.03, -0.0085, -0.0465), p(0.1, 0.0085, -0.0185)),
         box(p(-0.03, -0.0065, 0.0335), p(0.1, 0.0065, 0.0565)),
     )
-    b.part("bolt", box(p(-0.02, -0.0075, -0.0455), p(0.047, 0.0075, -0.0195)), material="brass")
-    b.slide("bolt", parent="case", axis=X, upper=0.02)
-    b.part("latch", box(p(-0.01, -0.0055, 0.0345), p(0.06, 0.0055, 0.0555)), material="brass")
+    b.part("bolt", box(p(-0.02, -0.0075, -0.0455), p(0.047, 0.0075, -0.0195)), look="brass")
+    b.slide("bolt", "case", X, 0.02)
+    b.part("latch", box(p(-0.01, -0.0055, 0.0345), p(0.06, 0.0055, 0.0555)), look="brass")
     b.cut("latch", beam(0.02 * size, 0.04 * size, p(0.045, -0.02, 0.045), p(0.08, 0.005, 0.045), Z))
-    b.slide("latch", parent="case", axis=-X, upper=0.014)
-    knob(
-        b,
-        "knob",
-        parent="case",
-        at=p(0, -0.012, 0.005),
-        radius=0.016 * size,
-        high=0.03 * size,
-        out=-Y,
-        reach=1.6,
-        material="brass",
-    )
+    b.slide("latch", "case", -X, 0.014)
+    knob(b, "knob", "case", p(0, -0.012, 0.005), 0.016 * size, -Y, high=0.03 * size, reach=1.6, material="brass")
 
 
-@kind(
-    "portcullis",
-    words="castle gate",
-    width=length(1.2, 3.0),
-    height=length(1.5, 3.0),
-)
+@kind(words="castle gate", width=(1.2, 3.0), height=(1.5, 3.0))
 def portcullis(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     b.part(
         "wall",
-        [box((s * w, -0.15, 0), (s * (w + 0.4), 0.15, 2.1 * height)) for s in (-1, 1)],
-        box((-w, -0.15, 2 * height), (w, 0.15, 2.1 * height)),
-        box((-w, 0.06, height), (w, 0.15, 1.1 * height)),
-        material="ceramic",
-        color="grey",
+        [slab((s * w, s * (w + 0.4)), 0.15, (0, 2.1 * height)) for s in (-1, 1)],
+        slab(w, 0.15, (2 * height, 2.1 * height)),
+        slab(w, (0.06, 0.15), (height, 1.1 * height)),
+        look="grey ceramic",
     )
-    b.cut("wall", [box((s * (w - 0.001), -0.05, 0), (s * (w + 0.08), 0.05, 1.98 * height)) for s in (-1, 1)])
+    b.cut("wall", [slab((s * (w - 0.001), s * (w + 0.08)), 0.05, (0, 1.98 * height)) for s in (-1, 1)])
     b.part(
         "gate",
         [box((x - 0.03, -0.03, 0), (x + 0.03, 0, height)) for x in spread(7, -w, w)],
-        [box((-w - 0.07, 0, z - 0.03), (w + 0.07, 0.03, z + 0.03)) for z in spread(5, 0.1, height)],
-        material="steel",
-        color="black",
+        [slab(w + 0.07, (0, 0.03), (z - 0.03, z + 0.03)) for z in spread(5, 0.1, height)],
+        look="black steel",
     )
-    b.slide("gate", parent="wall", axis=Z, upper=0.9 * height)
+    b.slide("gate", "wall", Z, 0.9 * height)
 
 
 @kind(
-    "sliding gate",
-    words="driveway gate, sliding driveway gate, yard sliding gate, factory gate",
-    width=length(2.0, 4.0),
-    height=length(1.0, 1.8),
+    words="driveway gate, sliding driveway gate, yard sliding gate, factory gate", width=(2.0, 4.0), height=(1.0, 1.8)
 )
 def sliding_gate(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     b.part(
         "posts",
-        [box((x - 0.1, -0.1, 0), (x + 0.1, 0.1, height + 0.1)) for x in (-w - 0.12, w + 0.12)],
+        [slab((x - 0.1, x + 0.1), 0.1, (0, height + 0.1)) for x in (-w - 0.12, w + 0.12)],
         box((-w - 0.02, -0.16, 0), (2.9 * w, -0.11, 0.04)),
         [box((x - 0.08, -0.155, 0), (x + 0.08, -0.1, 0.03)) for x in (-w - 0.1, w + 0.1)],
-        material="steel",
-        color="black",
+        look="black steel",
     )
     b.part(
         "gate",
         box((-w - 0.1, -0.16, 0.045), (w + 0.05, -0.11, 0.15)),
         box((-w - 0.1, -0.16, height - 0.06), (w + 0.05, -0.11, height)),
         [box((x - 0.012, -0.15, 0.1), (x + 0.012, -0.12, height - 0.03)) for x in spread(14, -w, w)],
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.slide("gate", parent="posts", axis=X, upper=0.85 * width)
+    b.slide("gate", "posts", X, 0.85 * width)
 
 
 @kind(
-    "air conditioner",
     words="split air conditioner, air conditioning unit",
-    width=length(0.5, 0.9),
+    width=(0.5, 0.9),
     number=whole(1, 4, words="louver, louvre, vane, flap"),
 )
 def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
     w = width / 2
-    b.part("case", box((-w, 0, 0), (w, 0.22, 0.28)), color="white")
+    b.part("case", slab(w, (0, 0.22), (0, 0.28)), look="white")
     b.cut(
         "case",
-        box((-w + 0.03, -0.1, 0.02), (w - 0.03, 0.14, 0.12)),
-        box((-w + 0.01, 0.02, 0.14), (w - 0.01, 0.21, 0.27)),
+        slab(w - 0.03, (-0.1, 0.14), (0.02, 0.12)),
+        slab(w - 0.01, (0.02, 0.21), (0.14, 0.27)),
     )
     for k, z in enumerate(spread(number, 0.02, 0.12)):
-        b.part(f"louver_{k}", box((-w + 0.032, -0.005, z - 0.002), (w - 0.032, 0.02, z + 0.002)), color="grey")
-        b.hinge(f"louver_{k}", parent="case", axis=X, pivot=(0, 0.008, z), upper=0.35, lower=-0.35)
+        b.part(f"louver_{k}", slab(w - 0.032, (-0.005, 0.02), (z - 0.002, z + 0.002)), look="grey")
+        b.hinge(f"louver_{k}", "case", X, (0, 0.008, z), 0.35, lower=-0.35)
         if k:
-            b.follow(f"louver_{k}", leader="louver_0", multiplier=1)
+            b.follow(f"louver_{k}", "louver_0", 1)
 
 
-@kind(
-    "cat litter box",
-    walls=4,
-    words="litter box, litter tray",
-    width=length(0.35, 0.55),
-)
+@kind("cat litter box", walls=4, words="litter box, litter tray", width=(0.35, 0.55))
 def litter_box(b: ObjectBuilder, width: float) -> None:
     w = width / 2
-    b.part("box", box((-w, -0.25, 0), (w, 0.25, 0.4)), color="grey")
-    b.cut("box", box((-w + 0.006, -0.244, 0.006), (w - 0.006, 0.244, 1)), box((-0.12, -1, 0.12), (0.12, 0, 0.34)))
-    b.part("lid", box((-w, -0.25, 0.401), (w, 0.25, 0.42)), box((-0.08, -0.02, 0.42), (0.08, 0.02, 0.46)), color="blue")
-    b.cut("lid", box((-0.06, -0.1, 0.42), (0.06, 0.1, 0.445)))
-    b.hinge("lid", parent="box", axis=-X, pivot=(0, 0.25, 0.401), upper=1.5)
-    b.part("flap", box((-0.118, -0.2485, 0.122), (0.118, -0.2455, 0.335)), material="glass")
-    b.hinge("flap", parent="box", axis=X, pivot=(0, -0.247, 0.335), upper=0.9, lower=-0.9)
+    b.part("box", slab(w, 0.25, (0, 0.4)), look="grey")
+    b.cut("box", slab(w - 0.006, 0.244, (0.006, 1)), slab(0.12, (-1, 0), (0.12, 0.34)))
+    b.part("lid", slab(w, 0.25, (0.401, 0.42)), slab(0.08, 0.02, (0.42, 0.46)), look="blue")
+    b.cut("lid", slab(0.06, 0.1, (0.42, 0.445)))
+    b.hinge("lid", "box", -X, (0, 0.25, 0.401), 1.5)
+    b.part("flap", slab(0.118, (-0.2485, -0.2455), (0.122, 0.335)), look="glass")
+    b.hinge("flap", "box", X, (0, -0.247, 0.335), 0.9, lower=-0.9)
 
 
-@kind(
-    "hamster cage",
-    words="rodent cage, hamster cage with a wheel, mouse cage",
-    width=length(0.4, 0.7),
-)
+@kind(words="rodent cage, hamster cage with a wheel, mouse cage", width=(0.4, 0.7))
 def hamster_cage(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "cage",
-        box((-w, -0.18, 0), (w, 0.18, 0.08)),
-        box((-w, -0.18, 0.38), (w, 0.18, 0.39)),
+        slab(w, 0.18, (0, 0.08)),
+        slab(w, 0.18, (0.38, 0.39)),
         [b.cylinder(0.003, (x, y, 0.07), (x, y, 0.385)) for x in spread(9, -w, w) for y in (-0.175, 0.175)],
         [b.cylinder(0.003, (x, y, 0.07), (x, y, 0.385)) for x in (-w + 0.005, w - 0.005) for y in (-0.1, 0, 0.1)],
         [box((0.3 * w - 0.01, 0.075, 0.07), (0.3 * w + 0.01, 0.09, 0.22)) for k in (1,)],
         b.cylinder(0.006, (0.3 * w, 0.08, 0.2), (0.3 * w, -0.05, 0.2)),
-        color="blue",
+        look="blue",
     )
     b.cut(
         "cage",
-        box((-w + 0.006, -0.174, 0.008), (w - 0.006, 0.174, 0.079)),
+        slab(w - 0.006, 0.174, (0.008, 0.079)),
         box((-0.8 * w, -0.2, 0.09), (-0.3 * w, -0.1, 0.3)),
     )
     b.part(
         "wheel",
         b.tube(0.1, 0.092, (0.3 * w, 0.06, 0.2), (0.3 * w, -0.04, 0.2)),
         b.cylinder(0.1, (0.3 * w, 0.066, 0.2), (0.3 * w, 0.058, 0.2)),
-        color="yellow",
+        look="yellow",
     )
     b.cut("wheel", b.cylinder(0.0075, (0.3 * w, -1, 0.2), (0.3 * w, 1, 0.2)))
-    b.spin("wheel", parent="cage", axis=Y, pivot=(0.3 * w, 0, 0.2))
-    b.part("door", box((-0.82 * w, -0.185, 0.085), (-0.28 * w, -0.1805, 0.305)), material="metal")
-    b.hinge("door", parent="cage", axis=X, pivot=(0, -0.185, 0.085), upper=1.5)
+    b.spin("wheel", "cage", Y, (0.3 * w, 0, 0.2))
+    b.part("door", box((-0.82 * w, -0.185, 0.085), (-0.28 * w, -0.1805, 0.305)), look="metal")
+    b.hinge("door", "cage", X, (0, -0.185, 0.085), 1.5)
 
 
 @kind(
-    "coat rack",
     words="coat hook rail, hook rail, coat hooks, folding hooks, wall hooks, key rack",
     number=whole(1, 12, default=4, usual=(3, 6), words="hook, peg"),
 )
 def coat_rack(b: ObjectBuilder, number: int) -> None:
     w = 0.06 * number
-    b.part("board", box((-w, 0, 0), (w, 0.02, 0.12)), material="wood")
+    b.part("board", slab(w, (0, 0.02), (0, 0.12)), look="wood")
     for k, x in enumerate(spread(number, -w, w)):
         b.part("board", [box((x + s * 0.012, -0.02, 0.03), (x + s * 0.017, 0.005, 0.05)) for s in (-1, 1)])
-        b.part(f"hook_{k}", box((x - 0.011, -0.016, 0.032), (x + 0.011, -0.006, 0.1)), material="metal")
-        b.hinge(f"hook_{k}", parent="board", axis=X, pivot=(x, -0.011, 0.04), upper=1.2)
+        b.part(f"hook_{k}", box((x - 0.011, -0.016, 0.032), (x + 0.011, -0.006, 0.1)), look="metal")
+        b.hinge(f"hook_{k}", "board", X, (x, -0.011, 0.04), 1.2)
 
 
 @kind(
-    "shoe cabinet",
     words="shoe rack, tilting shoe cabinet, tilt out cabinet, laundry cabinet, tilt out bin",
     rows=whole(1, 4, words="flap, compartment"),
-    width=length(0.5, 0.9),
+    width=(0.5, 0.9),
     drawers=whole(0, 1, default=0, words="drawer"),
 )
 def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> None:
@@ -228,20 +184,19 @@ def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> Non
     b.part(
         "cabinet",
         [box((s * w, 0, 0), (s * (w - 0.018), 0.2, top)) for s in (-1, 1)],
-        box((-w, 0.19, 0), (w, 0.2, top)),
-        box((-w, -0.02, top), (w, 0.2, top + 0.018)),
-        box((-w, 0, 0), (w, 0.2, 0.06)),
-        material="wood",
-        color="white",
+        slab(w, (0.19, 0.2), (0, top)),
+        slab(w, (-0.02, 0.2), (top, top + 0.018)),
+        slab(w, (0, 0.2), (0, 0.06)),
+        look="white wood",
     )
     if drawers:
-        b.part("cabinet", box((-w, 0, h - 0.009), (w, 0.2, h + 0.009)))
+        b.part("cabinet", slab(w, (0, 0.2), (h - 0.009, h + 0.009)))
         drawer(
             b,
             "drawer",
-            parent="cabinet",
-            lower=(-w + 0.018, -0.018, h + 0.012),
-            upper=(w - 0.018, 0.18, top - 0.003),
+            "cabinet",
+            (-w + 0.018, -0.018, h + 0.012),
+            (w - 0.018, 0.18, top - 0.003),
             out=-Y,
             material="wood",
         )
@@ -249,81 +204,70 @@ def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> Non
         half = (h - 0.08) / rows / 2
         b.part(
             f"flap_{k}",
-            box((-w, -0.018, z - half + 0.004), (w, -0.001, z + half - 0.004)),
-            box((-w + 0.022, -0.002, z - half + 0.004), (w - 0.022, 0.12, z - half + 0.014)),
-            box((-0.05, -0.035, z + half - 0.05), (0.05, -0.017, z + half - 0.04)),
-            material="wood",
+            slab(w, (-0.018, -0.001), (z - half + 0.004, z + half - 0.004)),
+            slab(w - 0.022, (-0.002, 0.12), (z - half + 0.004, z - half + 0.014)),
+            slab(0.05, (-0.035, -0.017), (z + half - 0.05, z + half - 0.04)),
+            look="wood",
         )
-        b.hinge(f"flap_{k}", parent="cabinet", axis=X, pivot=(0, -0.018, z - half + 0.004), upper=0.7)
+        b.hinge(f"flap_{k}", "cabinet", X, (0, -0.018, z - half + 0.004), 0.7)
 
 
-@kind(
-    "picture frame",
-    words="photo frame, easel frame, table mirror, makeup mirror with a stand",
-    width=length(0.1, 0.3),
-    height=length(0.13, 0.4),
-)
+@kind(words="photo frame, easel frame, table mirror, makeup mirror with a stand", width=(0.1, 0.3), height=(0.13, 0.4))
 def picture_frame(b: ObjectBuilder, width: float, height: float) -> None:
-    b.part("frame", box((-width / 2, 0, 0), (width / 2, 0.012, height)), material="wood")
-    b.cut("frame", box((-0.42 * width, -1, 0.08 * height), (0.42 * width, 0.005, 0.92 * height)))
-    b.part(
-        "stand",
-        box((-0.12 * width, 0.0125, 0.05 * height), (0.12 * width, 0.016, 0.75 * height)),
-        material="cardboard",
-        color="black",
-    )
-    b.hinge("stand", parent="frame", axis=X, pivot=(0, 0.0125, 0.75 * height), upper=0.6)
+    b.part("frame", slab(width / 2, (0, 0.012), (0, height)), look="wood")
+    b.cut("frame", slab(0.42 * width, (-1, 0.005), (0.08 * height, 0.92 * height)))
+    b.part("stand", slab(0.12 * width, (0.0125, 0.016), (0.05 * height, 0.75 * height)), look="black cardboard")
+    b.hinge("stand", "frame", X, (0, 0.0125, 0.75 * height), 0.6)
 
 
 @kind(
-    "extension table",
     words="extending table, extendable table, dining table with extension, telescopic table, pull out table",
-    width=length(1.0, 1.8),
-    depth=length(0.7, 1.0),
+    width=(1.0, 1.8),
+    depth=(0.7, 1.0),
 )
 def extension_table(b: ObjectBuilder, width: float, depth: float) -> None:
     w = width / 2
     t = depth / 2
-    legs(b, "table", lower=(-w + 0.05, -t + 0.05, 0), upper=(w - 0.05, t - 0.05, 0.7), thick=0.07)
+    legs(b, "table", (-w + 0.05, -t + 0.05, 0), (w - 0.05, t - 0.05, 0.7), 0.07)
     b.part(
         "table",
-        box((-w, -t, 0.725), (w, t, 0.75)),
-        [box((-w + 0.06, s * (t - 0.06), 0.63), (w - 0.06, s * (t - 0.1), 0.7)) for s in (-1, 1)],
+        slab(w, t, (0.725, 0.75)),
+        [slab(w - 0.06, (s * (t - 0.06), s * (t - 0.1)), (0.63, 0.7)) for s in (-1, 1)],
         [box((-w + 0.06, s * (t - 0.06), 0.69), (-w + 0.12, s * (t - 0.1), 0.726)) for s in (-1, 1)],
         [box((w - 0.12, s * (t - 0.06), 0.69), (w - 0.06, s * (t - 0.1), 0.726)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     for k, s in enumerate((-1, 1)):
-        b.part(f"leaf_{k}", box((s * 0.03, -t + 0.12, 0.702), (s * (w + 0.01), t - 0.12, 0.723)), material="wood")
-        b.slide(f"leaf_{k}", parent="table", axis=s * X, upper=0.7 * w)
+        b.part(f"leaf_{k}", slab((s * 0.03, s * (w + 0.01)), t - 0.12, (0.702, 0.723)), look="wood")
+        b.slide(f"leaf_{k}", "table", s * X, 0.7 * w)
 
 
 @kind(
     "coffee table with drawer",
     words="lift top coffee table, coffee table, lift top table",
-    width=length(0.8, 1.2),
-    depth=length(0.5, 0.7),
+    width=(0.8, 1.2),
+    depth=(0.5, 0.7),
 )
 def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
     w = width / 2
     t = depth / 2
-    b.part("body", box((-w, -t, 0.12), (w, t, 0.42)), material="wood")
-    legs(b, "body", lower=(-w, -t, 0), upper=(w, t, 0.125), thick=0.06)
-    b.cut("body", box((-w + 0.02, -t + 0.02, 0.28), (w - 0.02, t - 0.02, 1)))
-    drawer(b, "drawer", parent="body", lower=(-0.4 * width, -t, 0.14), upper=(0.4 * width, 0.6 * t, 0.25), out=-Y)
+    b.part("body", slab(w, t, (0.12, 0.42)), look="wood")
+    legs(b, "body", (-w, -t, 0), (w, t, 0.125), 0.06)
+    b.cut("body", slab(w - 0.02, t - 0.02, (0.28, 1)))
+    drawer(b, "drawer", "body", (-0.4 * width, -t, 0.14), (0.4 * width, 0.6 * t, 0.25), out=-Y)
     b.part(
         "top",
-        box((-w, -t, 0.421), (w, t, 0.445)),
-        [box((s * 0.8 * w - 0.02, -0.05, 0.29), (s * 0.8 * w + 0.02, 0.05, 0.422)) for s in (-1, 1)],
-        material="wood",
+        slab(w, t, (0.421, 0.445)),
+        [slab((s * 0.8 * w - 0.02, s * 0.8 * w + 0.02), 0.05, (0.29, 0.422)) for s in (-1, 1)],
+        look="wood",
     )
-    b.slide("top", parent="body", axis=Z, upper=0.12)
+    b.slide("top", "body", Z, 0.12)
 
 
 @kind(
     "adjustable headrest chair",
     words="airline seat row, train seat, bus seat, gaming seat, car seat with a headrest, car seat, airplane seat",
-    size=length(0.9, 1.1),
+    size=(0.9, 1.1),
 )
 def passenger_seat(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
@@ -333,81 +277,67 @@ def passenger_seat(b: ObjectBuilder, size: float) -> None:
         [box(p(s * 0.2 - 0.03, -0.2, 0), p(s * 0.2 + 0.03, 0.2, 0.26)) for s in (-1, 1)],
         [box(p(s * 0.31, -0.2, 0.3), p(s * 0.27, 0.34, 0.62)) for s in (-1, 1)],
         [box(p(s * 0.28, -0.1, 0.27), p(s * 0.25, 0.1, 0.4)) for s in (-1, 1)],
-        color="grey",
+        look="grey",
     )
-    b.part("back", box(p(-0.26, 0.255, 0.35), p(0.26, 0.37, 1)), color="blue")
+    b.part("back", box(p(-0.26, 0.255, 0.35), p(0.26, 0.37, 1)), look="blue")
     b.cut("back", [b.cylinder(0.009 * size, p(s * 0.08, 0.31, 0.8), p(s * 0.08, 0.31, 2)) for s in (-1, 1)])
-    b.hinge("back", parent="seat", axis=-X, pivot=p(0, 0.31, 0.36), upper=0.4, lower=0)
+    b.hinge("back", "seat", -X, p(0, 0.31, 0.36), 0.4, lower=0)
     b.part(
         "headrest",
         box(p(-0.14, 0.26, 1.03), p(0.14, 0.36, 1.22)),
         [b.cylinder(0.007 * size, p(s * 0.08, 0.31, 0.83), p(s * 0.08, 0.31, 1.04)) for s in (-1, 1)],
-        color="blue",
+        look="blue",
     )
-    b.slide("headrest", parent="back", axis=Z, upper=0.1, lower=-0.02)
+    b.slide("headrest", "back", Z, 0.1, lower=-0.02)
 
 
-@kind(
-    "parking bollard",
-    words="bollard, traffic post, folding parking post, parking lock",
-    height=length(0.5, 0.9),
-)
+@kind(words="bollard, traffic post, folding parking post, parking lock", height=(0.5, 0.9))
 def parking_bollard(b: ObjectBuilder, height: float) -> None:
     b.part(
         "base",
-        box((-0.2, -0.2, 0), (0.2, 0.2, 0.02)),
-        [box((s * 0.055, -0.04, 0.01), (s * 0.068, 0.04, 0.12)) for s in (-1, 1)],
-        material="steel",
-        color="black",
+        slab(0.2, 0.2, (0, 0.02)),
+        [slab((s * 0.055, s * 0.068), 0.04, (0.01, 0.12)) for s in (-1, 1)],
+        look="black steel",
     )
     b.part(
         "post",
-        box((-0.05, -0.04, 0.035), (0.05, 0.04, height)),
-        box((-0.0501, -0.0401, 0.7 * height), (0.0501, 0.0401, 0.8 * height)),
-        material="steel",
-        color="yellow",
+        slab(0.05, 0.04, (0.035, height)),
+        slab(0.0501, 0.0401, (0.7 * height, 0.8 * height)),
+        look="yellow steel",
     )
-    b.hinge("post", parent="base", axis=X, pivot=(0, 0.0, 0.095), upper=0.7, lower=-0.7)
+    b.hinge("post", "base", X, (0, 0.0, 0.095), 0.7, lower=-0.7)
 
 
-@kind(
-    "atm",
-    words="cash machine, cash dispenser",
-    width=length(0.5, 0.8),
-)
+@kind(words="cash machine, cash dispenser", width=(0.5, 0.8))
 def atm(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "case",
         prism([(-0.3, 0), (0.3, 0), (0.3, 1.6), (-0.1, 1.6), (-0.15, 1), (-0.3, 0.9)], (0, 0, 0), width, "x"),
-        material="steel",
-        color="blue",
+        look="blue steel",
     )
     b.cut(
         "case",
-        box((-w + 0.03, -0.28, 0.05), (w - 0.03, 0.28, 0.75)),
-        box((-0.35 * width, -0.4, 0.1), (0.35 * width, -0.2, 0.65)),
-        box((-0.12, -0.5, 0.78), (0.12, -0.22, 0.86)),
+        slab(w - 0.03, 0.28, (0.05, 0.75)),
+        slab(0.35 * width, (-0.4, -0.2), (0.1, 0.65)),
+        slab(0.12, (-0.5, -0.22), (0.78, 0.86)),
     )
     leaf(
         b,
         "door",
-        parent="case",
-        lower=(-0.36 * width, -0.32, 0.08),
-        upper=(0.36 * width, -0.301, 0.67),
+        "case",
+        (-0.36 * width, -0.32, 0.08),
+        (0.36 * width, -0.301, 0.67),
         hinge=X,
         out=-Y,
         reach=1.8,
         material="steel",
     )
-    b.part("flap", box((-0.118, -0.309, 0.775), (0.118, -0.301, 0.858)), color="black")
-    b.hinge("flap", parent="case", axis=-X, pivot=(0, -0.309, 0.858), upper=1.2)
+    b.part("flap", slab(0.118, (-0.309, -0.301), (0.775, 0.858)), look="black")
+    b.hinge("flap", "case", -X, (0, -0.309, 0.858), 1.2)
 
 
-@kind(
-    "shipping container",
-    words="cargo container, container with doors, freight container, storage container, sea container",
-)
+@kind(words="cargo container, container with doors, freight container, storage container, sea container")
 def shipping_container(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
     p = scaled(size)
@@ -415,8 +345,7 @@ def shipping_container(b: ObjectBuilder) -> None:
         "container",
         box(p(-1.2, 0, 0), p(1.2, 6, 2.5)),
         [box(p(s * 1.2, y - 0.05, 0.1), p(s * 1.23, y + 0.05, 2.4)) for s in (-1, 1) for y in spread(12, 0.2, 5.8)],
-        material="steel",
-        color="dark blue",
+        look="dark blue steel",
     )
     b.cut("container", box(p(-1.15, -1, 0.1), p(1.15, 5.95, 2.42)))
     for k, s in enumerate((-1, 1)):
@@ -424,52 +353,41 @@ def shipping_container(b: ObjectBuilder) -> None:
             f"door_{k}",
             box(p(s * 0.01, -0.06, 0.02), p(s * 1.2, -0.005, 2.48)),
             [box(p(s * 0.3 - 0.06, -0.13, z - 0.05), p(s * 0.3 + 0.06, -0.05, z + 0.05)) for z in (0.4, 2.1)],
-            material="steel",
-            color="dark blue",
+            look="dark blue steel",
         )
         b.cut(f"door_{k}", b.cylinder(0.0225 * size, p(s * 0.3, -0.1, -1), p(s * 0.3, -0.1, 3)))
-        b.hinge(f"door_{k}", parent="container", axis=s * Z, pivot=p(s * 1.2, -0.06, 0), upper=2.0)
+        b.hinge(f"door_{k}", "container", s * Z, p(s * 1.2, -0.06, 0), 2.0)
         b.part(
             f"bar_{k}",
             b.cylinder(0.02 * size, p(s * 0.3, -0.1, 0.03), p(s * 0.3, -0.1, 2.47)),
             box(p(s * 0.3, -0.12, 1.1), p(s * 0.6, -0.09, 1.16)),
-            material="steel",
+            look="steel",
         )
-        b.hinge(f"bar_{k}", parent=f"door_{k}", axis=-s * Z, pivot=p(s * 0.3, -0.1, 0), upper=1.2)
+        b.hinge(f"bar_{k}", f"door_{k}", -s * Z, p(s * 0.3, -0.1, 0), 1.2)
 
 
-@kind(
-    "butterfly valve",
-    words="throttle valve, throttle body, damper flap, air damper",
-    radius=length(0.03, 0.12),
-)
+@kind(words="throttle valve, throttle body, damper flap, air damper", radius=(0.03, 0.12))
 def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "body",
         b.tube(1.25 * r, r, (0, -0.4 * r, 0), (0, 0.4 * r, 0)),
         [b.tube(1.5 * r, r, (0, y - 0.06 * r, 0), (0, y + 0.06 * r, 0)) for y in (-0.4 * r, 0.4 * r)],
-        b.cylinder(0.2 * r, (0, 0, 1.2 * r), (0, 0, 1.6 * r)),
-        material="steel",
-        color="blue",
+        b.cylinder(0.2 * r, 1.2 * r, 1.6 * r),
+        look="blue steel",
     )
-    b.bore("body", b.cylinder(0.115 * r, (0, 0, -1.15 * r), (0, 0, 3 * r)))
+    b.bore("body", b.cylinder(0.115 * r, -1.15 * r, 3 * r))
     b.part(
         "disc",
         b.cylinder(0.96 * r, (0, -0.05 * r, 0), (0, 0.05 * r, 0)),
-        b.cylinder(0.1 * r, (0, 0, -1.1 * r), (0, 0, 1.9 * r)),
+        b.cylinder(0.1 * r, -1.1 * r, 1.9 * r),
         beam(0.2 * r, 0.12 * r, (0, 0, 1.8 * r), (1.8 * r, 0, 1.8 * r)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("disc", parent="body", axis=Z, pivot=(0, 0, 0), upper=1.5, lower=-1.5)
+    b.hinge("disc", "body", Z, (0, 0, 0), 1.5, lower=-1.5)
 
 
-@kind(
-    "fire hydrant",
-    walls=100,
-    words="hydrant, standpipe, garden hydrant",
-    size=length(0.9, 1.1),
-)
+@kind(walls=100, words="hydrant, standpipe, garden hydrant", size=(0.9, 1.1))
 def fire_hydrant(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -479,8 +397,7 @@ def fire_hydrant(b: ObjectBuilder, size: float) -> None:
         ball(0.1 * size, p(0, 0, 0.6)),
         [b.cylinder(0.06 * size, p(s * 0.05, 0, 0.45), p(s * 0.15, 0, 0.45)) for s in (-1, 1)],
         b.cylinder(0.025 * size, p(0, 0, 0.68), p(0, 0, 0.72)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.cut("body", b.cylinder(0.085 * size, p(0, 0, 0.06), p(0, 0, 0.6)))
     for k, s in enumerate((-1, 1)):
@@ -488,40 +405,32 @@ def fire_hydrant(b: ObjectBuilder, size: float) -> None:
             f"cap_{k}",
             b.cylinder(0.07 * size, p(s * 0.151, 0, 0.45), p(s * 0.185, 0, 0.45)),
             box(p(s * 0.18, -0.015, 0.435), p(s * 0.215, 0.015, 0.465)),
-            material="steel",
-            color="yellow",
+            look="yellow steel",
         )
-        b.spin(f"cap_{k}", parent="body", axis=s * X, pivot=p(0, 0, 0.45))
+        b.spin(f"cap_{k}", "body", s * X, p(0, 0, 0.45))
     b.part(
         "valve",
         b.cylinder(0.04 * size, p(0, 0, 0.721), p(0, 0, 0.75)),
         box(p(-0.012, -0.012, 0.74), p(0.012, 0.012, 0.78)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.spin("valve", parent="body", axis=Z, pivot=p(0, 0, 0))
+    b.spin("valve", "body", Z, p(0, 0, 0))
 
 
 @kind(
-    "rotary clothesline",
     words=(
         "clothesline, rotary clothes line, clothes line, rotary washing line, washing line, rotary airer, "
         "rotary dryer, hills hoist"
     ),
-    height=length(1.5, 2.0),
+    height=(1.5, 2.0),
 )
 def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
-    b.part(
-        "post",
-        b.cylinder(0.15, (0, 0, 0), (0, 0, 0.03)),
-        b.cylinder(0.022, (0, 0, 0.02), (0, 0, height)),
-        material="steel",
-    )
+    b.part("post", b.cylinder(0.15, 0, 0.03), b.cylinder(0.022, 0.02, height), look="steel")
     b.part(
         "head",
-        b.tube(0.04, 0.0245, (0, 0, height - 0.25), (0, 0, height)),
-        b.cylinder(0.04, (0, 0, height + 0.001), (0, 0, height + 0.04)),
-        b.tube(0.04, 0.0245, (0, 0, height - 0.01), (0, 0, height + 0.01)),
+        b.tube(0.04, 0.0245, height - 0.25, height),
+        b.cylinder(0.04, height + 0.001, height + 0.04),
+        b.tube(0.04, 0.0245, height - 0.01, height + 0.01),
         [
             beam(0.02, 0.02, (0.03 * cos(a), 0.03 * sin(a), height - 0.1), (0.9 * cos(a), 0.9 * sin(a), height + 0.3))
             for a in (0, 1.5708, 3.1416, 4.7124)
@@ -536,17 +445,12 @@ def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
             for q in (0.4, 0.6, 0.85)
             for a in (0, 1.5708, 3.1416, 4.7124)
         ],
-        material="metal",
+        look="metal",
     )
-    b.spin("head", parent="post", axis=Z, pivot=(0, 0, 0))
+    b.spin("head", "post", Z, (0, 0, 0))
 
 
-@kind(
-    "birdcage",
-    words="bird cage, parrot cage, budgie cage",
-    width=length(0.3, 0.6),
-    height=length(0.45, 0.9),
-)
+@kind(words="bird cage, parrot cage, budgie cage", width=(0.3, 0.6), height=(0.45, 0.9))
 def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
     """Bars on a tray under a roof, a door in front, a swing inside."""
     w = width / 2
@@ -556,8 +460,8 @@ def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
     half = 0.3 * width
     b.part(
         "cage",
-        box((-w, -w, 0), (w, w, 0.03)),
-        box((-w, -w, top), (w, w, top + 0.015)),
+        slab(w, w, (0, 0.03)),
+        slab(w, w, (top, top + 0.015)),
         [
             b.cylinder(0.003, (x, s * (w - 0.005), 0.02), (x, s * (w - 0.005), top + 0.01))
             for x in spread(9, -w, w)
@@ -575,12 +479,12 @@ def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
             if abs(x) <= half
             for a, b_ in ((0.02, low), (high, top + 0.01))
         ],
-        [box((-half - 0.01, -w, z - 0.006), (half + 0.01, 0.01 - w, z + 0.006)) for z in (low, high)],
+        [slab(half + 0.01, (-w, 0.01 - w), (z - 0.006, z + 0.006)) for z in (low, high)],
         [box((s * half - 0.006, -w, low), (s * half + 0.006, 0.01 - w, high)) for s in (-1, 1)],
-        [box((-w, y - 0.01, top - 0.01), (w, y + 0.01, top + 0.001)) for y in [0]],
-        material="steel",
+        [slab(w, (y - 0.01, y + 0.01), (top - 0.01, top + 0.001)) for y in [0]],
+        look="steel",
     )
-    leaf(b, "door", parent="cage", lower=(-half, -w - 0.008, low), upper=(half, -w, high), hinge=-X, out=-Y, reach=2.0)
+    leaf(b, "door", "cage", (-half, -w - 0.008, low), (half, -w, high), hinge=-X, out=-Y, reach=2.0)
     z = top - 0.02
     arm = 0.35 * w
     b.part(
@@ -588,6 +492,6 @@ def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
         [b.cylinder(0.003, (s * arm, 0, z), (s * arm, 0, 0.45 * height)) for s in (-1, 1)],
         b.cylinder(0.006, (-1.2 * arm, 0, 0.45 * height), (1.2 * arm, 0, 0.45 * height)),
         b.cylinder(0.004, (-arm, 0, z), (arm, 0, z)),
-        material="wood",
+        look="wood",
     )
-    b.hinge("swing", parent="cage", axis=X, pivot=(0, 0, z), upper=0.5, lower=-0.5, ajar=False)
+    b.hinge("swing", "cage", X, (0, 0, z), 0.5, lower=-0.5, ajar=False)

@@ -6,162 +6,118 @@ from math import cos, pi, sin
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import button, case, knob
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, scaled
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, scaled, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "moka pot",
-    words="stovetop espresso maker, espresso pot",
-    radius=length(0.035, 0.055),
-    height=length(0.13, 0.2),
-)
+@kind(words="stovetop espresso maker, espresso pot", radius=(0.035, 0.055), height=(0.13, 0.2))
 def moka_pot(b: ObjectBuilder, radius: float, height: float) -> None:
     h = height / 2
     b.part(
         "pot",
-        b.cone(radius, 0.75 * radius, (0, 0, 0), (0, 0, h)),
-        b.cone(0.75 * radius, radius, (0, 0, h), (0, 0, height)),
+        b.cone(radius, 0.75 * radius, 0, h),
+        b.cone(0.75 * radius, radius, h, height),
         beam(0.015, 0.012, (0, 0.9 * radius, 0.92 * height), (0, 2 * radius, 0.9 * height)),
         beam(0.015, 0.012, (0, 2 * radius, 0.92 * height), (0, 2.1 * radius, 0.55 * height), Y),
-        material="metal",
+        look="metal",
     )
-    b.cut("pot", b.cone(0.65 * radius, 0.92 * radius, (0, 0, h + 0.005), (0, 0, height + 0.001)))
+    b.cut("pot", b.cone(0.65 * radius, 0.92 * radius, h + 0.005, height + 0.001))
     b.part(
         "lid",
-        b.cone(radius, 0.2 * radius, (0, 0, height + 0.001), (0, 0, height + 0.02)),
+        b.cone(radius, 0.2 * radius, height + 0.001, height + 0.02),
         ball(0.01, (0, 0, height + 0.026)),
-        material="metal",
+        look="metal",
     )
-    b.hinge("lid", parent="pot", axis=-X, pivot=(0, radius, height + 0.001), upper=1.7)
+    b.hinge("lid", "pot", -X, (0, radius, height + 0.001), 1.7)
 
 
-@kind(
-    "rice cooker",
-    words="multi cooker, slow cooker, crock pot",
-    radius=length(0.11, 0.15),
-    height=length(0.18, 0.26),
-)
+@kind(words="multi cooker, slow cooker, crock pot", radius=(0.11, 0.15), height=(0.18, 0.26))
 def rice_cooker(b: ObjectBuilder, radius: float, height: float) -> None:
-    b.part("body", b.cylinder(radius, (0, 0, 0.01), (0, 0, height)), color="white")
-    b.cut("body", b.cylinder(0.86 * radius, (0, 0, 0.04), (0, 0, height + 0.01)))
-    b.part("body", box((-0.04, radius - 0.005, height - 0.06), (0.04, radius + 0.02, height)))
+    b.part("body", b.cylinder(radius, 0.01, height), look="white")
+    b.cut("body", b.cylinder(0.86 * radius, 0.04, height + 0.01))
+    b.part("body", slab(0.04, (radius - 0.005, radius + 0.02), (height - 0.06, height)))
     b.part(
         "lid",
-        b.cylinder(radius, (0, 0, height + 0.001), (0, 0, height + 0.04)),
-        b.cone(0.9 * radius, 0.5 * radius, (0, 0, height + 0.04), (0, 0, height + 0.06)),
-        color="grey",
+        b.cylinder(radius, height + 0.001, height + 0.04),
+        b.cone(0.9 * radius, 0.5 * radius, height + 0.04, height + 0.06),
+        look="grey",
     )
-    b.hinge("lid", parent="body", axis=-X, pivot=(0, radius + 0.02, height + 0.001), upper=1.5)
-    button(b, "button", parent="body", at=(0, -radius, 0.4 * height), size=(0.03, 0.02), high=0.008, out=-Y)
+    b.hinge("lid", "body", -X, (0, radius + 0.02, height + 0.001), 1.5)
+    button(b, "button", "body", (0, -radius, 0.4 * height), (0.03, 0.02), 0.008, -Y)
 
 
-@kind(
-    "pressure cooker",
-    words="canner",
-    radius=length(0.1, 0.14),
-    height=length(0.15, 0.24),
-)
+@kind(words="canner", radius=(0.1, 0.14), height=(0.15, 0.24))
 def pressure_cooker(b: ObjectBuilder, radius: float, height: float) -> None:
-    b.part("pot", b.cylinder(radius, (0, 0, 0), (0, 0, height)), material="steel")
-    b.cut("pot", b.cylinder(0.97 * radius, (0, 0, 0.006), (0, 0, height + 1)))
+    b.part("pot", b.cylinder(radius, 0, height), look="steel")
+    b.cut("pot", b.cylinder(0.97 * radius, 0.006, height + 1))
     b.part(
-        "pot", beam(0.03, 0.02, (-radius + 0.002, 0, 0.85 * height), (-radius - 0.15, 0, 0.9 * height)), color="black"
+        "pot", beam(0.03, 0.02, (-radius + 0.002, 0, 0.85 * height), (-radius - 0.15, 0, 0.9 * height)), look="black"
     )
     b.part(
         "lid",
-        b.cone(1.02 * radius, 0.85 * radius, (0, 0, height + 0.001), (0, 0, height + 0.03)),
+        b.cone(1.02 * radius, 0.85 * radius, height + 0.001, height + 0.03),
         beam(0.03, 0.02, (-0.5 * radius, 0, height + 0.04), (-radius - 0.14, 0, height + 0.05)),
-        b.cylinder(0.008, (0, 0, height + 0.02), (0, 0, height + 0.06)),
-        material="steel",
+        b.cylinder(0.008, height + 0.02, height + 0.06),
+        look="steel",
     )
-    b.slide("lid", parent="pot", axis=Z, upper=0.12)
-    b.part("weight", b.cylinder(0.018, (0, 0, height + 0.035), (0, 0, height + 0.08)), material="brass")
-    b.cut("weight", b.cylinder(0.0095, (0, 0, height + 0.02), (0, 0, height + 0.061)))
-    b.slide("weight", parent="lid", axis=Z, upper=0.03)
+    b.slide("lid", "pot", Z, 0.12)
+    b.part("weight", b.cylinder(0.018, height + 0.035, height + 0.08), look="brass")
+    b.cut("weight", b.cylinder(0.0095, height + 0.02, height + 0.061))
+    b.slide("weight", "lid", Z, 0.03)
 
 
-@kind(
-    "air fryer",
-    walls=6,
-    words="hot air fryer",
-    width=length(0.24, 0.32),
-    height=length(0.28, 0.36),
-)
+@kind(walls=6, words="hot air fryer", width=(0.24, 0.32), height=(0.28, 0.36))
 def air_fryer(b: ObjectBuilder, width: float, height: float) -> None:
-    b.part("body", box((-width / 2, -width / 2, 0), (width / 2, width / 2, height)), color="black")
+    b.part("body", slab(width / 2, width / 2, (0, height)), look="black")
     b.cut(
         "body",
-        box((-0.42 * width, -width, 0.04), (0.42 * width, 0.4 * width, 0.55 * height)),
-        box((-0.42 * width, -0.4 * width, 0.6 * height), (0.42 * width, 0.42 * width, 0.95 * height)),
+        slab(0.42 * width, (-width, 0.4 * width), (0.04, 0.55 * height)),
+        slab(0.42 * width, (-0.4 * width, 0.42 * width), (0.6 * height, 0.95 * height)),
     )
     b.part(
         "basket",
-        box((-0.41 * width, -width / 2 - 0.02, 0.043), (0.41 * width, 0.38 * width, 0.53 * height)),
-        box((-0.02, -width / 2 - 0.12, 0.3 * height), (0.02, -width / 2, 0.38 * height)),
-        color="grey",
+        slab(0.41 * width, (-width / 2 - 0.02, 0.38 * width), (0.043, 0.53 * height)),
+        slab(0.02, (-width / 2 - 0.12, -width / 2), (0.3 * height, 0.38 * height)),
+        look="grey",
     )
-    b.cut("basket", box((-0.38 * width, -0.45 * width, 0.055), (0.38 * width, 0.35 * width, height)))
-    b.slide("basket", parent="body", axis=-Y, upper=0.25)
-    knob(
-        b,
-        "timer",
-        parent="body",
-        at=(-0.2 * width, -width / 2, 0.78 * height),
-        radius=0.025,
-        high=0.02,
-        out=-Y,
-        reach=4.7,
-    )
-    knob(
-        b,
-        "thermostat",
-        parent="body",
-        at=(0.2 * width, -width / 2, 0.78 * height),
-        radius=0.025,
-        high=0.02,
-        out=-Y,
-        reach=4.7,
-    )
+    b.cut("basket", slab(0.38 * width, (-0.45 * width, 0.35 * width), (0.055, height)))
+    b.slide("basket", "body", -Y, 0.25)
+    knob(b, "timer", "body", (-0.2 * width, -width / 2, 0.78 * height), 0.025, -Y, high=0.02, reach=4.7)
+    knob(b, "thermostat", "body", (0.2 * width, -width / 2, 0.78 * height), 0.025, -Y, high=0.02, reach=4.7)
 
 
-@kind(
-    "juicer",
-    words="centrifugal juicer, juice extractor",
-    radius=length(0.08, 0.11),
-    height=length(0.2, 0.28),
-)
+@kind(words="centrifugal juicer, juice extractor", radius=(0.08, 0.11), height=(0.2, 0.28))
 def juicer(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part(
         "body",
-        b.cylinder(radius, (0, 0, 0), (0, 0, height)),
-        box((-0.02, -radius - 0.05, 0.75 * height), (0.02, -radius + 0.01, 0.82 * height)),
-        color="grey",
+        b.cylinder(radius, 0, height),
+        slab(0.02, (-radius - 0.05, -radius + 0.01), (0.75 * height, 0.82 * height)),
+        look="grey",
     )
     b.part(
         "lid",
-        b.cylinder(1.05 * radius, (0, 0, height + 0.001), (0, 0, height + 0.05)),
-        b.tube(0.04, 0.035, (0, 0, height + 0.04), (0, 0, height + 0.16)),
-        color="black",
+        b.cylinder(1.05 * radius, height + 0.001, height + 0.05),
+        b.tube(0.04, 0.035, height + 0.04, height + 0.16),
+        look="black",
     )
-    b.cut("lid", b.cylinder(0.035, (0, 0, height + 0.03), (0, 0, height + 0.2)))
-    b.slide("lid", parent="body", axis=Z, upper=0.1)
+    b.cut("lid", b.cylinder(0.035, height + 0.03, height + 0.2))
+    b.slide("lid", "body", Z, 0.1)
     b.part(
         "pusher",
-        b.cylinder(0.032, (0, 0, height + 0.06), (0, 0, height + 0.2)),
-        b.cylinder(0.045, (0, 0, height + 0.185), (0, 0, height + 0.2)),
-        color="white",
+        b.cylinder(0.032, height + 0.06, height + 0.2),
+        b.cylinder(0.045, height + 0.185, height + 0.2),
+        look="white",
     )
-    b.slide("pusher", parent="lid", axis=Z, upper=0.13)
-    knob(b, "switch", parent="body", at=(radius, 0, 0.3 * height), radius=0.02, high=0.015, out=X, reach=2.0)
+    b.slide("pusher", "lid", Z, 0.13)
+    knob(b, "switch", "body", (radius, 0, 0.3 * height), 0.02, X, high=0.015, reach=2.0)
 
 
-@kind("rotary grater", words="drum grater", size=length(0.9, 1.3))
+@kind(words="drum grater", size=(0.9, 1.3))
 def rotary_grater(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -169,7 +125,7 @@ def rotary_grater(b: ObjectBuilder, size: float) -> None:
         b.tube(0.03 * size, 0.026 * size, p(0, -0.03, 0.1), p(0, 0.04, 0.1)),
         box(p(-0.015, 0.02, 0.127), p(0.015, 0.04, 0.26)),
         box(p(-0.02, -0.02, 0.128), p(0.02, 0.02, 0.15)),
-        color="white",
+        look="white",
     )
     b.part(
         "drum",
@@ -177,20 +133,19 @@ def rotary_grater(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.008 * size, p(0, -0.08, 0.1), p(0, -0.03, 0.1)),
         beam(0.014 * size, 0.008 * size, p(0, -0.075, 0.1), p(0.08, -0.075, 0.1), Y),
         b.cylinder(0.008 * size, p(0.075, -0.12, 0.1), p(0.075, -0.07, 0.1)),
-        material="steel",
+        look="steel",
     )
-    b.spin("drum", parent="body", axis=-Y, pivot=p(0, 0, 0.1))
+    b.spin("drum", "body", -Y, p(0, 0, 0.1))
 
 
-@kind("apple peeler", words="apple corer, crank peeler", size=length(0.9, 1.2))
+@kind(words="apple corer, crank peeler", size=(0.9, 1.2))
 def apple_peeler(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "base",
         box(p(-0.16, -0.04, 0), p(0.16, 0.04, 0.015)),
         box(p(0.05, -0.02, 0.01), p(0.08, 0.02, 0.1)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.bore("base", b.cylinder(0.0085 * size, p(0.04, 0, 0.08), p(0.1, 0, 0.08)))
     b.part(
@@ -198,20 +153,20 @@ def apple_peeler(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.0075 * size, p(-0.06, 0, 0.08), p(0.15, 0, 0.08)),
         beam(0.012 * size, 0.01 * size, p(0.145, 0, 0.08), p(0.145, 0, 0.15), X),
         b.cylinder(0.01 * size, p(0.14, 0, 0.145), p(0.2, 0, 0.145)),
-        material="steel",
+        look="steel",
     )
-    b.spin("shaft", parent="base", axis=X, pivot=p(0, 0, 0.08))
+    b.spin("shaft", "base", X, p(0, 0, 0.08))
     b.part(
         "arm",
         b.cylinder(0.01 * size, p(-0.1, 0.02, 0.016), p(-0.1, 0.02, 0.03)),
         beam(0.01 * size, 0.012 * size, p(-0.1, 0.02, 0.03), p(-0.1, 0.02, 0.13), X),
         beam(0.008 * size, 0.02 * size, p(-0.1, 0.02, 0.125), p(-0.06, 0.05, 0.125)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("arm", parent="base", axis=Z, pivot=p(-0.1, 0.02, 0.02), upper=0.8, lower=0)
+    b.hinge("arm", "base", Z, p(-0.1, 0.02, 0.02), 0.8, lower=0)
 
 
-@kind("teapot", words="tea pot, coffee jug, pitcher with lid, coffee pot", radius=length(0.06, 0.1))
+@kind(words="tea pot, coffee jug, pitcher with lid, coffee pot", radius=(0.06, 0.1))
 def teapot(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -221,8 +176,7 @@ def teapot(b: ObjectBuilder, radius: float) -> None:
         ),
         b.cone(0.28 * r, 0.12 * r, (0, -0.8 * r, 0.6 * r), (0, -1.7 * r, 1.4 * r)),
         b.torus(0.45 * r, 0.08 * r, (0, 1.15 * r, 0.8 * r), X),
-        material="ceramic",
-        color="white",
+        look="white ceramic",
     )
     b.cut(
         "pot",
@@ -241,233 +195,166 @@ def teapot(b: ObjectBuilder, radius: float) -> None:
     )
     b.part(
         "lid",
-        b.cone(0.48 * r, 0.15 * r, (0, 0, 1.45 * r + 0.001), (0, 0, 1.65 * r)),
+        b.cone(0.48 * r, 0.15 * r, 1.45 * r + 0.001, 1.65 * r),
         ball(0.1 * r, (0, 0, 1.72 * r)),
-        material="ceramic",
-        color="white",
+        look="white ceramic",
     )
-    b.slide("lid", parent="pot", axis=Z, upper=r)
+    b.slide("lid", "pot", Z, r)
 
 
-@kind(
-    "butter dish",
-    words="cheese dome, cake dome, cloche",
-    width=length(0.16, 0.3),
-    depth=length(0.1, 0.2),
-)
+@kind(words="cheese dome, cake dome, cloche", width=(0.16, 0.3), depth=(0.1, 0.2))
 def butter_dish(b: ObjectBuilder, width: float, depth: float) -> None:
-    b.part("dish", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.012)), material="ceramic", color="white")
-    b.part(
-        "cover",
-        box((-0.44 * width, -0.42 * depth, 0.013), (0.44 * width, 0.42 * depth, 0.08)),
-        box((-0.02, -0.01, 0.075), (0.02, 0.01, 0.1)),
-        material="glass",
-    )
-    b.cut("cover", box((-0.42 * width, -0.4 * depth, 0), (0.42 * width, 0.4 * depth, 0.075)))
-    b.slide("cover", parent="dish", axis=Z, upper=0.1)
+    b.part("dish", slab(width / 2, depth / 2, (0, 0.012)), look="white ceramic")
+    b.part("cover", slab(0.44 * width, 0.42 * depth, (0.013, 0.08)), slab(0.02, 0.01, (0.075, 0.1)), look="glass")
+    b.cut("cover", slab(0.42 * width, 0.4 * depth, (0, 0.075)))
+    b.slide("cover", "dish", Z, 0.1)
 
 
 @kind(
-    "travel mug",
     walls=5,
     words="thermo mug, insulated mug, beer stein, tankard, coffee mug with lid",
-    radius=length(0.035, 0.05),
-    height=length(0.13, 0.2),
+    radius=(0.035, 0.05),
+    height=(0.13, 0.2),
 )
 def travel_mug(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part(
         "mug",
-        b.cylinder(radius, (0, 0, 0), (0, 0, height)),
+        b.cylinder(radius, 0, height),
         b.torus(0.2 * height, 0.007, (0, radius + 0.012, 0.5 * height), X),
-        material="steel",
+        look="steel",
     )
-    b.cut("mug", b.cylinder(0.92 * radius, (0, 0, 0.006), (0, 0, height + 1)))
+    b.cut("mug", b.cylinder(0.92 * radius, 0.006, height + 1))
     b.part(
         "lid",
-        b.cylinder(radius, (0, 0, height + 0.001), (0, 0, height + 0.01)),
-        box((-0.01, radius - 0.005, height + 0.001), (0.01, radius + 0.012, height + 0.012)),
-        color="black",
+        b.cylinder(radius, height + 0.001, height + 0.01),
+        slab(0.01, (radius - 0.005, radius + 0.012), (height + 0.001, height + 0.012)),
+        look="black",
     )
-    b.hinge("lid", parent="mug", axis=-X, pivot=(0, radius + 0.008, height + 0.001), upper=1.9)
+    b.hinge("lid", "mug", -X, (0, radius + 0.008, height + 0.001), 1.9)
 
 
-@kind("egg slicer", words="egg cutter", size=length(0.9, 1.2))
+@kind(words="egg cutter", size=(0.9, 1.2))
 def egg_slicer(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "base",
         box(p(-0.045, -0.06, 0), p(0.045, 0.06, 0.02)),
         box(p(-0.045, 0.06, 0), p(0.045, 0.075, 0.024)),
-        color="white",
+        look="white",
     )
     b.cut("base", b.cylinder(0.028 * size, p(0, 0, 0.008), p(0, 0, 0.03)))
-    b.part("frame", box(p(-0.045, -0.06, 0.025), p(0.045, 0.075, 0.031)), material="steel")
+    b.part("frame", box(p(-0.045, -0.06, 0.025), p(0.045, 0.075, 0.031)), look="steel")
     b.cut("frame", box(p(-0.037, -0.05, 0), p(0.037, 0.05, 0.1)))
     for x in spread(7, -0.037 * size, 0.037 * size):
         b.part("frame", b.cylinder(0.0008, (x, -0.055 * size, 0.028 * size), (x, 0.055 * size, 0.028 * size)))
-    b.hinge("frame", parent="base", axis=-X, pivot=p(0, 0.075, 0.025), upper=1.6)
+    b.hinge("frame", "base", -X, p(0, 0.075, 0.025), 1.6)
 
 
-@kind("spice rack", words="spice carousel, revolving spice rack", number=whole(4, 8))
+@kind(words="spice carousel, revolving spice rack", number=whole(4, 8))
 def spice_rack(b: ObjectBuilder, number: int) -> None:
-    b.part(
-        "base", b.cylinder(0.08, (0, 0, 0), (0, 0, 0.02)), b.cylinder(0.008, (0, 0, 0.01), (0, 0, 0.3)), material="wood"
-    )
-    b.part(
-        "rack",
-        [b.cylinder(0.1, (0, 0, z), (0, 0, z + 0.012)) for z in (0.03, 0.16)],
-        b.tube(0.014, 0.01, (0, 0, 0.03), (0, 0, 0.28)),
-        material="wood",
-    )
-    b.cut("rack", b.cylinder(0.0095, (0, 0, 0), (0, 0, 1)))
+    b.part("base", b.cylinder(0.08, 0, 0.02), b.cylinder(0.008, 0.01, 0.3), look="wood")
+    b.part("rack", [b.cylinder(0.1, z, z + 0.012) for z in (0.03, 0.16)], b.tube(0.014, 0.01, 0.03, 0.28), look="wood")
+    b.cut("rack", b.cylinder(0.0095, 0, 1))
     for a in [2 * pi * k / number for k in range(number)]:
         x, y = 0.07 * cos(a), 0.07 * sin(a)
         jars = [b.cylinder(0.022, (x, y, z + 0.01), (x, y, z + 0.1)) for z in (0.03, 0.16)]
         b.part("rack", b.painted(*jars, material="glass", color="green"))
-    b.spin("rack", parent="base", axis=Z, pivot=(0, 0, 0))
+    b.spin("rack", "base", Z, (0, 0, 0))
 
 
-@kind("kitchen timer", words="wind up timer, cooking timer, timer", radius=length(0.03, 0.05))
+@kind(words="wind up timer, cooking timer, timer", radius=(0.03, 0.05))
 def kitchen_timer(b: ObjectBuilder, radius: float) -> None:
-    b.part("base", b.cone(radius, 0.9 * radius, (0, 0, 0), (0, 0, 0.4 * radius)), color="white")
+    b.part("base", b.cone(radius, 0.9 * radius, 0, 0.4 * radius), look="white")
     b.part(
         "dial",
-        b.cone(0.9 * radius, 0.5 * radius, (0, 0, 0.42 * radius), (0, 0, 1.1 * radius)),
-        box((-0.08 * radius, -0.85 * radius, 0.42 * radius), (0.08 * radius, 0, 1.15 * radius)),
-        color="red",
+        b.cone(0.9 * radius, 0.5 * radius, 0.42 * radius, 1.1 * radius),
+        slab(0.08 * radius, (-0.85 * radius, 0), (0.42 * radius, 1.15 * radius)),
+        look="red",
     )
-    b.hinge("dial", parent="base", axis=Z, pivot=(0, 0, 0), upper=5.5)
+    b.hinge("dial", "base", Z, (0, 0, 0), 5.5)
 
 
-@kind(
-    "range hood",
-    words="cooker hood, extractor hood, kitchen hood, extractor fan",
-    width=length(0.6, 0.9),
-    depth=length(0.3, 0.5),
-)
+@kind(words="cooker hood, extractor hood, kitchen hood, extractor fan", width=(0.6, 0.9), depth=(0.3, 0.5))
 def range_hood(b: ObjectBuilder, width: float, depth: float) -> None:
-    b.part(
-        "hood",
-        box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.08)),
-        box((-0.15, 0, 0.07), (0.15, depth / 2, 0.6)),
-        material="steel",
-    )
+    b.part("hood", slab(width / 2, depth / 2, (0, 0.08)), slab(0.15, (0, depth / 2), (0.07, 0.6)), look="steel")
     b.cut(
         "hood",
-        box((-0.48 * width, -0.6 * depth, 0.015), (0.48 * width, 0.4 * depth, 0.04)),
-        box((-0.14, 0.01, 0.1), (0.14, depth / 2 - 0.01, 0.7)),
+        slab(0.48 * width, (-0.6 * depth, 0.4 * depth), (0.015, 0.04)),
+        slab(0.14, (0.01, depth / 2 - 0.01), (0.1, 0.7)),
     )
     b.part(
         "visor",
-        box((-0.475 * width, -depth / 2 - 0.015, 0.017), (0.475 * width, 0.38 * depth, 0.037)),
-        box((-width / 2, -depth / 2 - 0.015, 0.001), (width / 2, -depth / 2 - 0.002, 0.05)),
-        material="steel",
+        slab(0.475 * width, (-depth / 2 - 0.015, 0.38 * depth), (0.017, 0.037)),
+        slab(width / 2, (-depth / 2 - 0.015, -depth / 2 - 0.002), (0.001, 0.05)),
+        look="steel",
     )
-    b.slide("visor", parent="hood", axis=-Y, upper=0.6 * depth)
+    b.slide("visor", "hood", -Y, 0.6 * depth)
     for k, x in enumerate(spread(3, 0.1, 0.4 * width)):
-        button(b, f"button_{k}", parent="hood", at=(x, -depth / 2, 0.065), size=(0.02, 0.012), high=0.005, out=-Y)
+        button(b, f"button_{k}", "hood", (x, -depth / 2, 0.065), (0.02, 0.012), 0.005, -Y)
 
 
-@kind(
-    "popcorn machine",
-    words="popcorn cart, popcorn maker",
-    width=length(0.4, 0.6),
-)
+@kind(words="popcorn cart, popcorn maker", width=(0.4, 0.6))
 def popcorn_machine(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "case",
-        box((-w, -w, 0), (w, w, 0.1)),
-        box((-w, -w, 0.75), (w, w, 0.85)),
+        slab(w, w, (0, 0.1)),
+        slab(w, w, (0.75, 0.85)),
         [
             box((x - 0.012, y - 0.012, 0.1), (x + 0.012, y + 0.012, 0.75))
             for x in (-w + 0.012, w - 0.012)
             for y in (-w + 0.012, w - 0.012)
         ],
-        box((-w, w - 0.005, 0.1), (w, w, 0.75)),
-        [box((x * 0.14 - 0.01, -0.01, 0.55), (x * 0.14 + 0.01, 0.01, 0.76)) for x in (-1, 1)],
-        material="steel",
-        color="red",
+        slab(w, (w - 0.005, w), (0.1, 0.75)),
+        [slab((x * 0.14 - 0.01, x * 0.14 + 0.01), 0.01, (0.55, 0.76)) for x in (-1, 1)],
+        look="red steel",
     )
-    leaf(
-        b,
-        "door",
-        parent="case",
-        lower=(-w, -w - 0.008, 0.1),
-        upper=(w, -w, 0.75),
-        hinge=-X,
-        out=-Y,
-        reach=1.8,
-        material="glass",
-    )
+    leaf(b, "door", "case", (-w, -w - 0.008, 0.1), (w, -w, 0.75), hinge=-X, out=-Y, reach=1.8, material="glass")
     b.part(
         "kettle",
-        b.cylinder(0.1, (0, 0, 0.45), (0, 0, 0.6)),
+        b.cylinder(0.1, 0.45, 0.6),
         [b.cylinder(0.006, (x * 0.095, 0, 0.57), (x * 0.128, 0, 0.57)) for x in (-1, 1)],
-        material="steel",
+        look="steel",
     )
-    b.cut("kettle", b.cylinder(0.094, (0, 0, 0.46), (0, 0, 1)))
-    b.hinge("kettle", parent="case", axis=X, pivot=(0, 0, 0.57), upper=1.2)
+    b.cut("kettle", b.cylinder(0.094, 0.46, 1))
+    b.hinge("kettle", "case", X, (0, 0, 0.57), 1.2)
 
 
-@kind(
-    "deep fryer",
-    walls=5,
-    words="chip pan, fryer",
-    width=length(0.2, 0.3),
-    depth=length(0.25, 0.35),
-)
+@kind(walls=5, words="chip pan, fryer", width=(0.2, 0.3), depth=(0.25, 0.35))
 def deep_fryer(b: ObjectBuilder, width: float, depth: float) -> None:
-    b.part("body", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.2)), material="steel")
-    b.cut("body", box((-0.44 * width, -0.44 * depth, 0.05), (0.44 * width, 0.44 * depth, 1)))
+    b.part("body", slab(width / 2, depth / 2, (0, 0.2)), look="steel")
+    b.cut("body", slab(0.44 * width, 0.44 * depth, (0.05, 1)))
     b.part(
         "basket",
-        box((-0.4 * width, -0.4 * depth, 0.08), (0.4 * width, 0.4 * depth, 0.19)),
+        slab(0.4 * width, 0.4 * depth, (0.08, 0.19)),
         beam(0.02, 0.012, (0, -0.4 * depth, 0.205), (0, -depth / 2 - 0.14, 0.24)),
         beam(0.02, 0.02, (0, -0.385 * depth, 0.17), (0, -0.385 * depth, 0.215), Y),
-        material="steel",
+        look="steel",
     )
-    b.cut("basket", box((-0.385 * width, -0.36 * depth, 0.085), (0.385 * width, 0.385 * depth, 1)))
-    b.slide("basket", parent="body", axis=Z, upper=0.2)
-    knob(
-        b, "thermostat", parent="body", at=(0.25 * width, -depth / 2, 0.08), radius=0.018, high=0.018, out=-Y, reach=4.0
-    )
+    b.cut("basket", slab(0.385 * width, (-0.36 * depth, 0.385 * depth), (0.085, 1)))
+    b.slide("basket", "body", Z, 0.2)
+    knob(b, "thermostat", "body", (0.25 * width, -depth / 2, 0.08), 0.018, -Y, high=0.018, reach=4.0)
 
 
-@kind(
-    "water filter jug",
-    words="measuring jug with lid, milk jug with lid, water pitcher",
-    radius=length(0.05, 0.07),
-    height=length(0.2, 0.27),
-)
+@kind(words="measuring jug with lid, milk jug with lid, water pitcher", radius=(0.05, 0.07), height=(0.2, 0.27))
 def water_filter_jug(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part(
         "jug",
-        b.cone(0.85 * radius, radius, (0, 0, 0), (0, 0, height)),
+        b.cone(0.85 * radius, radius, 0, height),
         beam(0.02, 0.014, (0, 0.9 * radius, 0.9 * height), (0, 1.9 * radius, 0.86 * height)),
         beam(0.02, 0.014, (0, 1.9 * radius, 0.9 * height), (0, 1.8 * radius, 0.3 * height), Y),
         beam(0.02, 0.014, (0, 1.85 * radius, 0.32 * height), (0, 0.8 * radius, 0.3 * height)),
-        material="glass",
+        look="glass",
     )
-    b.cut("jug", b.cone(0.8 * radius, 0.96 * radius, (0, 0, 0.006), (0, 0, height + 0.001)))
-    b.part("lid", b.cylinder(radius, (0, 0, height + 0.001), (0, 0, height + 0.012)), color="blue")
-    b.hinge("lid", parent="jug", axis=-X, pivot=(0, radius, height + 0.001), upper=1.4)
+    b.cut("jug", b.cone(0.8 * radius, 0.96 * radius, 0.006, height + 0.001))
+    b.part("lid", b.cylinder(radius, height + 0.001, height + 0.012), look="blue")
+    b.hinge("lid", "jug", -X, (0, radius, height + 0.001), 1.4)
 
 
-@kind(
-    "beer tap",
-    words="draft tower, beer dispenser, wine tap",
-    height=length(0.3, 0.45),
-    number=whole(1, 4, words="handle, tap, lever"),
-)
+@kind(words="draft tower, beer dispenser, wine tap", height=(0.3, 0.45), number=whole(1, 4, words="handle, tap, lever"))
 def beer_tap(b: ObjectBuilder, height: float, number: int) -> None:
     width = 0.1 * number
-    b.part(
-        "tower",
-        box((-width / 2 - 0.02, -0.05, 0), (width / 2 + 0.02, 0.05, 0.03)),
-        box((-width / 2, -0.035, 0.02), (width / 2, 0.035, height)),
-        material="chrome",
-    )
+    b.part("tower", slab(width / 2 + 0.02, 0.05, (0, 0.03)), slab(width / 2, 0.035, (0.02, height)), look="chrome")
     for k, x in enumerate(spread(number, -width / 2, width / 2)):
         b.part(
             "tower",
@@ -478,57 +365,46 @@ def beer_tap(b: ObjectBuilder, height: float, number: int) -> None:
             f"handle_{k}",
             beam(0.012, 0.012, (x, -0.085, 0.8 * height + 0.022), (x, -0.085, 0.8 * height + 0.075), Y),
             b.rod(0.016, (x, -0.085, 0.8 * height + 0.07), (x, -0.085, 0.8 * height + 0.16)),
-            material="wood",
-            color="black",
+            look="black wood",
         )
-        b.hinge(f"handle_{k}", parent="tower", axis=X, pivot=(x, -0.085, 0.8 * height + 0.022), upper=0.6, lower=0)
+        b.hinge(f"handle_{k}", "tower", X, (x, -0.085, 0.8 * height + 0.022), 0.6, lower=0)
 
 
-@kind(
-    "cocktail shaker",
-    words="shaker, protein shaker",
-    radius=length(0.035, 0.05),
-    height=length(0.15, 0.22),
-)
+@kind(words="shaker, protein shaker", radius=(0.035, 0.05), height=(0.15, 0.22))
 def cocktail_shaker(b: ObjectBuilder, radius: float, height: float) -> None:
-    b.part("cup", b.cone(0.75 * radius, radius, (0, 0, 0), (0, 0, height)), material="steel")
-    b.cut("cup", b.cone(0.7 * radius, 0.96 * radius, (0, 0, 0.004), (0, 0, height + 0.001)))
+    b.part("cup", b.cone(0.75 * radius, radius, 0, height), look="steel")
+    b.cut("cup", b.cone(0.7 * radius, 0.96 * radius, 0.004, height + 0.001))
     b.part(
         "lid",
-        b.cone(radius, 0.5 * radius, (0, 0, height + 0.001), (0, 0, height + 0.04)),
-        b.cylinder(0.45 * radius, (0, 0, height + 0.03), (0, 0, height + 0.06)),
-        material="steel",
+        b.cone(radius, 0.5 * radius, height + 0.001, height + 0.04),
+        b.cylinder(0.45 * radius, height + 0.03, height + 0.06),
+        look="steel",
     )
-    b.slide("lid", parent="cup", axis=Z, upper=0.08)
-    b.part("cap", b.cylinder(0.6 * radius, (0, 0, height + 0.045), (0, 0, height + 0.085)), material="steel")
+    b.slide("lid", "cup", Z, 0.08)
+    b.part("cap", b.cylinder(0.6 * radius, height + 0.045, height + 0.085), look="steel")
     b.cut(
         "cap",
-        b.cylinder(0.48 * radius, (0, 0, height), (0, 0, height + 0.065)),
-        b.cone(1.02 * radius, 0.52 * radius, (0, 0, height + 0.001), (0, 0, height + 0.041)),
+        b.cylinder(0.48 * radius, height, height + 0.065),
+        b.cone(1.02 * radius, 0.52 * radius, height + 0.001, height + 0.041),
     )
-    b.slide("cap", parent="lid", axis=Z, upper=0.06)
+    b.slide("cap", "lid", Z, 0.06)
 
 
 @kind(
-    "toaster oven",
-    walls=6,
-    words="mini oven, countertop oven, reflow oven",
-    width=length(0.35, 0.5),
-    depth=length(0.28, 0.36),
-    height=length(0.2, 0.28),
+    walls=6, words="mini oven, countertop oven, reflow oven", width=(0.35, 0.5), depth=(0.28, 0.36), height=(0.2, 0.28)
 )
 def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     w = width / 2
     b.part(
         "body",
-        box((-w, -depth / 2, 0.015), (w, depth / 2, height)),
+        slab(w, depth / 2, (0.015, height)),
         [b.cylinder(0.012, (x, y, 0), (x, y, 0.016)) for x in (-0.8 * w, 0.8 * w) for y in (-0.4 * depth, 0.4 * depth)],
-        material="steel",
+        look="steel",
     )
     b.cut(
         "body",
         box((-w + 0.015, -depth, 0.03), (0.55 * w, 0.45 * depth, height - 0.02)),
-        box((0.6 * w, -0.45 * depth, 0.03), (w - 0.01, 0.45 * depth, height - 0.02)),
+        slab((0.6 * w, w - 0.01), 0.45 * depth, (0.03, height - 0.02)),
     )
     b.part(
         "door",
@@ -538,15 +414,14 @@ def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) ->
             box((x, -depth / 2 - 0.035, height - 0.035), (x + 0.01, -depth / 2 - 0.014, height - 0.025))
             for x in (-0.7 * w, 0.26 * w)
         ],
-        material="glass",
+        look="glass",
     )
-    b.hinge("door", parent="body", axis=X, pivot=(0, -depth / 2 - 0.016, 0.022), upper=1.5)
+    b.hinge("door", "body", X, (0, -depth / 2 - 0.016, 0.022), 1.5)
     for k, z in enumerate(spread(3, 0.03, height - 0.02)):
-        knob(b, f"knob_{k}", parent="body", at=(0.78 * w, -depth / 2, z), radius=0.016, high=0.016, out=-Y, reach=4.7)
+        knob(b, f"knob_{k}", "body", (0.78 * w, -depth / 2, z), 0.016, -Y, high=0.016, reach=4.7)
 
 
 @kind(
-    "cooktop",
     words="hob, gas hob, hot plate, burner, stove top, camping stove, gas burner, portable stove, electric hob",
     number=whole(1, 6, words="knob, burner, dial"),
 )
@@ -555,8 +430,8 @@ def cooktop(b: ObjectBuilder, number: int) -> None:
     columns = (number + rows - 1) // rows
     width = 0.28 * columns + 0.04
     depth = 0.28 * rows + 0.08
-    b.part("plate", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.05)), material="steel", color="black")
-    b.cut("plate", box((-width / 2 + 0.005, -depth / 2 + 0.03, 0.005), (width / 2 - 0.005, depth / 2 - 0.005, 0.045)))
+    b.part("plate", slab(width / 2, depth / 2, (0, 0.05)), look="black steel")
+    b.cut("plate", slab(width / 2 - 0.005, (-depth / 2 + 0.03, depth / 2 - 0.005), (0.005, 0.045)))
     for k in range(number):
         x = -width / 2 + 0.16 + 0.28 * (k % columns)
         y = -depth / 2 + 0.22 + 0.28 * (k // columns)
@@ -566,25 +441,19 @@ def cooktop(b: ObjectBuilder, number: int) -> None:
             [box((x - 0.11, y + s - 0.005, 0.045), (x + 0.11, y + s + 0.005, 0.08)) for s in (-0.06, 0.06)],
         )
     for k, x in enumerate(spread(number, -width / 2 + 0.02, width / 2 - 0.02)):
-        knob(b, f"knob_{k}", parent="plate", at=(x, -depth / 2 + 0, 0.025), radius=0.018, high=0.022, out=-Y, reach=4.7)
+        knob(b, f"knob_{k}", "plate", (x, -depth / 2 + 0, 0.025), 0.018, -Y, high=0.022, reach=4.7)
 
 
-@kind(
-    "chest freezer",
-    words="ice cream freezer, deep freezer",
-    width=length(0.6, 1.4),
-    depth=length(0.5, 0.7),
-    height=length(0.7, 0.9),
-)
+@kind(words="ice cream freezer, deep freezer", width=(0.6, 1.4), depth=(0.5, 0.7), height=(0.7, 0.9))
 def chest_freezer(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
-    b.part("body", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, height)), color="white")
-    b.cut("body", box((-width / 2 + 0.06, -depth / 2 + 0.06, 0.1), (width / 2 - 0.06, depth / 2 - 0.06, height + 1)))
+    b.part("body", slab(width / 2, depth / 2, (0, height)), look="white")
+    b.cut("body", slab(width / 2 - 0.06, depth / 2 - 0.06, (0.1, height + 1)))
     leaf(
         b,
         "lid",
-        parent="body",
-        lower=(-width / 2, -depth / 2, height),
-        upper=(width / 2, depth / 2, height + 0.06),
+        "body",
+        (-width / 2, -depth / 2, height),
+        (width / 2, depth / 2, height + 0.06),
         hinge=Y,
         out=Z,
         reach=1.4,
@@ -592,70 +461,57 @@ def chest_freezer(b: ObjectBuilder, width: float, depth: float, height: float) -
     )
 
 
-@kind(
-    "paper towel holder",
-    words="kitchen roll holder, paper roll stand",
-    height=length(0.24, 0.32),
-)
+@kind(words="kitchen roll holder, paper roll stand", height=(0.24, 0.32))
 def paper_towel_holder(b: ObjectBuilder, height: float) -> None:
     b.part(
         "stand",
-        b.cylinder(0.075, (0, 0, 0), (0, 0, 0.012)),
-        b.cylinder(0.009, (0, 0, 0.01), (0, 0, height + 0.04)),
+        b.cylinder(0.075, 0, 0.012),
+        b.cylinder(0.009, 0.01, height + 0.04),
         ball(0.014, (0, 0, height + 0.05)),
-        material="wood",
+        look="wood",
     )
-    b.part("roll", b.tube(0.06, 0.02, (0, 0, 0.014), (0, 0, height)), material="cardboard", color="white")
-    b.spin("roll", parent="stand", axis=Z, pivot=(0, 0, 0))
+    b.part("roll", b.tube(0.06, 0.02, 0.014, height), look="white cardboard")
+    b.spin("roll", "stand", Z, (0, 0, 0))
 
 
-@kind(
-    "tortilla press",
-    words="burger press, hamburger press, dumpling press",
-    radius=length(0.08, 0.13),
-)
+@kind(words="burger press, hamburger press, dumpling press", radius=(0.08, 0.13))
 def tortilla_press(b: ObjectBuilder, radius: float) -> None:
     b.part(
         "base",
-        b.cylinder(radius, (0, 0, 0.01), (0, 0, 0.025)),
-        box((-0.035, 0.8 * radius, 0.01), (0.035, radius + 0.04, 0.024)),
+        b.cylinder(radius, 0.01, 0.025),
+        slab(0.035, (0.8 * radius, radius + 0.04), (0.01, 0.024)),
         [box((x * 0.02, radius + 0.003, 0.01), (x * 0.035, radius + 0.04, 0.05)) for x in (-1, 1)],
         [box((x * 0.02, -radius - 0.04, 0.01), (x * 0.035, -radius + 0.01, 0.026)) for x in (-1, 1)],
         [box((x * 0.02, -radius - 0.04, 0.01), (x * 0.035, -radius - 0.005, 0.032)) for x in (-1, 1)],
-        material="metal",
+        look="metal",
     )
     b.part(
         "plate",
-        b.cylinder(0.97 * radius, (0, 0, 0.027), (0, 0, 0.042)),
-        box((-0.018, 0.9 * radius, 0.027), (0.018, radius + 0.035, 0.042)),
-        material="metal",
+        b.cylinder(0.97 * radius, 0.027, 0.042),
+        slab(0.018, (0.9 * radius, radius + 0.035), (0.027, 0.042)),
+        look="metal",
     )
-    b.hinge("plate", parent="base", axis=-X, pivot=(0, radius + 0.035, 0.027), upper=1.5)
+    b.hinge("plate", "base", -X, (0, radius + 0.035, 0.027), 1.5)
     b.bore("base", b.cylinder(0.0055, (-0.1, -radius - 0.025, 0.02), (0.1, -radius - 0.025, 0.02)))
     b.part(
         "lever",
         beam(0.02, 0.012, (0, -radius - 0.025, 0.022), (0, -radius - 0.025, 0.24), Y),
         b.cylinder(0.004, (-0.033, -radius - 0.025, 0.02), (0.033, -radius - 0.025, 0.02)),
-        material="metal",
+        look="metal",
     )
-    b.hinge("lever", parent="base", axis=-X, pivot=(0, -radius - 0.025, 0.02), upper=0.5, lower=-0.6)
+    b.hinge("lever", "base", -X, (0, -radius - 0.025, 0.02), 0.5, lower=-0.6)
 
 
-@kind(
-    "rotisserie",
-    words="roasting spit, kebab grill, doner grill, barbecue spit",
-    width=length(0.6, 1.2),
-)
+@kind(words="roasting spit, kebab grill, doner grill, barbecue spit", width=(0.6, 1.2))
 def rotisserie(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "frame",
-        box((-w, -0.2, 0), (w, 0.2, 0.08)),
+        slab(w, 0.2, (0, 0.08)),
         [beam(0.02, 0.02, (s * w * 0.95, 0, 0.06), (s * w * 0.95, 0, 0.38), X) for s in (-1, 1)],
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.cut("frame", box((-w + 0.02, -0.18, 0.02), (w - 0.02, 0.18, 0.2)))
+    b.cut("frame", slab(w - 0.02, 0.18, (0.02, 0.2)))
     b.bore("frame", [b.cylinder(0.0075, (s * w * 0.8, 0, 0.34), (s * w * 1.1, 0, 0.34)) for s in (-1, 1)])
     b.part(
         "spit",
@@ -663,90 +519,72 @@ def rotisserie(b: ObjectBuilder, width: float) -> None:
         b.rod(0.08, (-0.15, 0, 0.34), (0.15, 0, 0.34)),
         beam(0.012, 0.01, (w + 0.055, 0, 0.34), (w + 0.055, 0, 0.24), X),
         b.cylinder(0.01, (w + 0.05, 0, 0.25), (w + 0.12, 0, 0.25)),
-        material="steel",
+        look="steel",
     )
-    b.spin("spit", parent="frame", axis=X, pivot=(0, 0, 0.34))
+    b.spin("spit", "frame", X, (0, 0, 0.34))
 
 
-@kind(
-    "can crusher",
-    words="bottle crusher, can press",
-    height=length(0.3, 0.45),
-)
+@kind(words="bottle crusher, can press", height=(0.3, 0.45))
 def can_crusher(b: ObjectBuilder, height: float) -> None:
     b.part(
         "frame",
-        box((-0.05, 0, 0), (0.05, 0.02, height)),
-        box((-0.05, -0.1, 0), (0.05, 0.01, 0.02)),
+        slab(0.05, (0, 0.02), (0, height)),
+        slab(0.05, (-0.1, 0.01), (0, 0.02)),
         [box((s * 0.05, -0.03, 0.02), (s * 0.042, 0.001, height - 0.02)) for s in (-1, 1)],
         [box((s * 0.02, -0.04, height - 0.03), (s * 0.032, 0.01, height + 0.03)) for s in (-1, 1)],
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.part(
         "ram",
-        box((-0.04, -0.09, 0.6 * height), (0.04, -0.002, 0.6 * height + 0.02)),
-        box((-0.035, -0.03, 0.6 * height), (0.035, -0.002, 0.6 * height + 0.06)),
-        material="steel",
+        slab(0.04, (-0.09, -0.002), (0.6 * height, 0.6 * height + 0.02)),
+        slab(0.035, (-0.03, -0.002), (0.6 * height, 0.6 * height + 0.06)),
+        look="steel",
     )
-    b.slide("ram", parent="frame", axis=-Z, upper=0.5 * height)
-    b.part("lever", beam(0.03, 0.015, (0, -0.025, height + 0.015), (0, -0.33, height + 0.12)), material="steel")
-    b.hinge("lever", parent="frame", axis=X, pivot=(0, -0.025, height + 0.015), upper=0.35, lower=-0.9)
+    b.slide("ram", "frame", -Z, 0.5 * height)
+    b.part("lever", beam(0.03, 0.015, (0, -0.025, height + 0.015), (0, -0.33, height + 0.12)), look="steel")
+    b.hinge("lever", "frame", X, (0, -0.025, height + 0.015), 0.35, lower=-0.9)
 
 
-@kind(
-    "cutlery box",
-    words="tea box, sewing box with tray",
-    width=length(0.2, 0.35),
-    depth=length(0.15, 0.25),
-)
+@kind(words="tea box, sewing box with tray", width=(0.2, 0.35), depth=(0.15, 0.25))
 def cutlery_box(b: ObjectBuilder, width: float, depth: float) -> None:
-    case(b, "box", lower=(-width / 2, -depth / 2, 0), upper=(width / 2, depth / 2, 0.12), opening=Z, wall=0.008)
-    b.part(
-        "tray",
-        box((-width / 2 + 0.011, -depth / 2 + 0.011, 0.07), (width / 2 - 0.011, depth / 2 - 0.011, 0.115)),
-        material="wood",
-    )
+    case(b, "box", (-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.12), opening=Z, wall=0.008)
+    b.part("tray", slab(width / 2 - 0.011, depth / 2 - 0.011, (0.07, 0.115)), look="wood")
     b.cut(
         "tray",
         [
-            box((x - width / 6 + 0.012, -depth / 2 + 0.018, 0.076), (x + width / 6 - 0.012, depth / 2 - 0.018, 0.2))
+            slab((x - width / 6 + 0.012, x + width / 6 - 0.012), depth / 2 - 0.018, (0.076, 0.2))
             for x in spread(3, -width / 2 + 0.011, width / 2 - 0.011)
         ],
     )
     leaf(
         b,
         "lid",
-        parent="box",
-        lower=(-width / 2, -depth / 2, 0.12),
-        upper=(width / 2, depth / 2, 0.13),
+        "box",
+        (-width / 2, -depth / 2, 0.12),
+        (width / 2, depth / 2, 0.13),
         hinge=Y,
         out=Z,
         reach=1.7,
         handle=False,
     )
-    b.slide("tray", parent="box", axis=Z, upper=0.004)
+    b.slide("tray", "box", Z, 0.004)
 
 
 @kind(
-    "shower cabin",
-    walls=9,
-    words="shower cubicle, shower stall, shower enclosure, corner shower",
-    width=length(0.8, 1.1),
-    height=length(1.9, 2.1),
+    walls=9, words="shower cubicle, shower stall, shower enclosure, corner shower", width=(0.8, 1.1), height=(1.9, 2.1)
 )
 def shower_cabin(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     b.part(
         "cabin",
-        box((-w, -w, 0), (w, w, 0.1)),
-        box((-w, w - 0.02, 0.1), (w, w, height)),
-        box((w - 0.02, -w, 0.1), (w, w, height)),
-        [box((-w, -w, z), (w, -w + 0.05, z + 0.03)) for z in (0.1, height - 0.03)],
-        box((-w, -w, 0.1), (-w + 0.03, w, height)),
+        slab(w, w, (0, 0.1)),
+        slab(w, (w - 0.02, w), (0.1, height)),
+        slab((w - 0.02, w), w, (0.1, height)),
+        [slab(w, (-w, -w + 0.05), (z, z + 0.03)) for z in (0.1, height - 0.03)],
+        slab((-w, -w + 0.03), w, (0.1, height)),
         b.cylinder(0.012, (0, w - 0.05, height - 0.1), (0, w - 0.01, height - 0.1)),
         b.cone(0.08, 0.02, (0, w - 0.12, height - 0.16), (0, w - 0.06, height - 0.09)),
-        color="white",
+        look="white",
     )
     b.part("cabin", box((0, -w + 0.005, 0.12), (w - 0.02, -w + 0.013, height - 0.02)))
     b.part(
@@ -754,33 +592,17 @@ def shower_cabin(b: ObjectBuilder, width: float, height: float) -> None:
         box((-w + 0.04, -w + 0.018, 0.135), (0.02, -w + 0.026, height - 0.035)),
         box((-0.02, -w + 0.0275, 0.9), (0, -w + 0.05, 1.2)),
         box((-0.02, -w + 0.02, 0.95), (0, -w + 0.03, 1.15)),
-        material="glass",
+        look="glass",
     )
-    b.slide("door", parent="cabin", axis=X, upper=0.85 * w - 0.05)
-    knob(b, "tap", parent="cabin", at=(0, w - 0.02, 1.1), radius=0.03, high=0.04, out=-Y, reach=3.0, material="chrome")
+    b.slide("door", "cabin", X, 0.85 * w - 0.05)
+    knob(b, "tap", "cabin", (0, w - 0.02, 1.1), 0.03, -Y, high=0.04, reach=3.0, material="chrome")
 
 
-@kind(
-    "bathtub",
-    words="bath tub, walk in bathtub, bath, tub",
-    length=length(1.3, 1.7),
-    width=length(0.65, 0.8),
-    height=length(0.5, 0.6),
-)
+@kind("bathtub", words="bath tub, walk in bathtub, bath, tub", length=(1.3, 1.7), width=(0.65, 0.8), height=(0.5, 0.6))
 def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float) -> None:
-    b.part("tub", box((0, 0, 0), (length, width, height)), material="ceramic", color="white")
-    b.cut("tub", box((0.06, 0.06, 0.12), (length - 0.06, width - 0.06, 1)), box((0.2, -0.1, 0.15), (0.7, 0.1, 1)))
-    leaf(
-        b,
-        "door",
-        parent="tub",
-        lower=(0.203, 0.0, 0.155),
-        upper=(0.697, 0.05, height),
-        hinge=-X,
-        out=-Y,
-        reach=1.6,
-        material="plastic",
-    )
+    b.part("tub", box((0, 0, 0), (length, width, height)), look="white ceramic")
+    b.cut("tub", box((0.06, 0.06, 0.12), (length - 0.06, width - 0.06, 1)), slab((0.2, 0.7), 0.1, (0.15, 1)))
+    leaf(b, "door", "tub", (0.203, 0.0, 0.155), (0.697, 0.05, height), hinge=-X, out=-Y, reach=1.6, material="plastic")
     b.part(
         "tub",
         b.cylinder(0.02, (length - 0.03, width / 2, height), (length - 0.03, width / 2, height + 0.12)),
@@ -788,65 +610,46 @@ def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float
     )
     for k, s in enumerate((-1, 1)):
         knob(
-            b,
-            f"tap_{k}",
-            parent="tub",
-            at=(length - 0.03, width / 2 + s * 0.12, height),
-            radius=0.022,
-            high=0.05,
-            out=Z,
-            material="chrome",
+            b, f"tap_{k}", "tub", (length - 0.03, width / 2 + s * 0.12, height), 0.022, Z, high=0.05, material="chrome"
         )
 
 
-@kind(
-    "washbasin",
-    words="sink, wash basin, kitchen sink, bathroom sink, hand basin",
-    width=length(0.45, 0.8),
-    depth=length(0.38, 0.5),
-)
+@kind(words="sink, wash basin, kitchen sink, bathroom sink, hand basin", width=(0.45, 0.8), depth=(0.38, 0.5))
 def washbasin(b: ObjectBuilder, width: float, depth: float) -> None:
     b.part(
         "basin",
-        box((-width / 2, -depth / 2, 0.75), (width / 2, depth / 2, 0.9)),
+        slab(width / 2, depth / 2, (0.75, 0.9)),
         b.cylinder(0.08, (0, 0.05, 0), (0, 0.05, 0.76)),
-        material="ceramic",
-        color="white",
+        look="white ceramic",
     )
-    b.cut("basin", box((-0.42 * width, -0.42 * depth, 0.78), (0.42 * width, 0.25 * depth, 1)))
+    b.cut("basin", slab(0.42 * width, (-0.42 * depth, 0.25 * depth), (0.78, 1)))
     b.part(
         "plug",
         b.cylinder(0.022, (0, -0.05, 0.782), (0, -0.05, 0.79)),
         b.cylinder(0.004, (0, -0.05, 0.788), (0, -0.05, 0.81)),
-        material="chrome",
+        look="chrome",
     )
-    b.slide("plug", parent="basin", axis=Z, upper=0.05)
+    b.slide("plug", "basin", Z, 0.05)
     b.part(
         "spout",
         b.cylinder(0.02, (0, 0.38 * depth, 0.902), (0, 0.38 * depth, 1.02)),
         b.cylinder(0.012, (0, 0.38 * depth, 1), (0, 0 * depth, 1.02)),
         b.cylinder(0.01, (0, 0.01, 1.025), (0, 0.01, 0.99)),
-        material="chrome",
+        look="chrome",
     )
-    b.hinge("spout", parent="basin", axis=Z, pivot=(0, 0.38 * depth, 0.9), upper=1.0, lower=-1.0)
+    b.hinge("spout", "basin", Z, (0, 0.38 * depth, 0.9), 1.0, lower=-1.0)
     b.part(
         "lever",
         b.cylinder(0.018, (0, 0.38 * depth, 1.022), (0, 0.38 * depth, 1.04)),
         beam(0.012, 0.008, (0, 0.38 * depth, 1.035), (0, 0.38 * depth - 0.1, 1.06)),
-        material="chrome",
+        look="chrome",
     )
-    b.hinge("lever", parent="spout", axis=Z, pivot=(0, 0.38 * depth, 1.02), upper=0.7, lower=-0.7)
+    b.hinge("lever", "spout", Z, (0, 0.38 * depth, 1.02), 0.7, lower=-0.7)
 
 
-@kind("bidet", height=length(0.38, 0.42))
+@kind(height=(0.38, 0.42))
 def bidet(b: ObjectBuilder, height: float) -> None:
-    b.part(
-        "bowl",
-        b.cone(0.12, 0.18, (0, 0, 0), (0, 0, height)),
-        box((-0.18, 0, height - 0.14), (0.18, 0.32, height)),
-        material="ceramic",
-        color="white",
-    )
+    b.part("bowl", b.cone(0.12, 0.18, 0, height), slab(0.18, (0, 0.32), (height - 0.14, height)), look="white ceramic")
     b.cut("bowl", b.cone(0.06, 0.15, (0, -0.02, height - 0.15), (0, -0.02, height + 0.001)))
     b.part(
         "bowl",
@@ -857,31 +660,25 @@ def bidet(b: ObjectBuilder, height: float) -> None:
         "lever",
         b.cylinder(0.017, (0, 0.24, height + 0.081), (0, 0.24, height + 0.1)),
         beam(0.012, 0.008, (0, 0.24, height + 0.095), (0, 0.33, height + 0.12)),
-        material="chrome",
+        look="chrome",
     )
-    b.hinge("lever", parent="bowl", axis=Z, pivot=(0, 0.24, height + 0.08), upper=0.8, lower=-0.8)
+    b.hinge("lever", "bowl", Z, (0, 0.24, height + 0.08), 0.8, lower=-0.8)
 
 
-@kind(
-    "laundry basket",
-    walls=5,
-    words="laundry hamper, linen bin, laundry bin",
-    width=length(0.35, 0.5),
-    height=length(0.5, 0.7),
-)
+@kind(walls=5, words="laundry hamper, linen bin, laundry bin", width=(0.35, 0.5), height=(0.5, 0.7))
 def laundry_basket(b: ObjectBuilder, width: float, height: float) -> None:
-    b.part("basket", box((-width / 2, -0.17, 0), (width / 2, 0.17, height)), material="wood", color="beige")
+    b.part("basket", slab(width / 2, 0.17, (0, height)), look="beige wood")
     b.cut(
         "basket",
-        box((-width / 2 + 0.01, -0.16, 0.012), (width / 2 - 0.01, 0.16, height + 1)),
-        [box((-0.4 * width, -0.3, z - 0.012), (0.4 * width, 0.3, z + 0.012)) for z in spread(6, 0.05, height - 0.05)],
+        slab(width / 2 - 0.01, 0.16, (0.012, height + 1)),
+        [slab(0.4 * width, 0.3, (z - 0.012, z + 0.012)) for z in spread(6, 0.05, height - 0.05)],
     )
     leaf(
         b,
         "lid",
-        parent="basket",
-        lower=(-width / 2, -0.17, height),
-        upper=(width / 2, 0.17, height + 0.014),
+        "basket",
+        (-width / 2, -0.17, height),
+        (width / 2, 0.17, height + 0.014),
         hinge=Y,
         out=Z,
         reach=1.6,
@@ -889,26 +686,21 @@ def laundry_basket(b: ObjectBuilder, width: float, height: float) -> None:
     )
 
 
-@kind("toilet brush", walls=5, words="toilet brush set, brush holder", height=length(0.35, 0.45))
+@kind(walls=5, words="toilet brush set, brush holder", height=(0.35, 0.45))
 def toilet_brush(b: ObjectBuilder, height: float) -> None:
-    b.part("holder", b.cylinder(0.05, (0, 0, 0), (0, 0, 0.14)), material="steel")
-    b.cut("holder", b.cylinder(0.046, (0, 0, 0.006), (0, 0, 1)))
+    b.part("holder", b.cylinder(0.05, 0, 0.14), look="steel")
+    b.cut("holder", b.cylinder(0.046, 0.006, 1))
     b.part(
         "brush",
-        b.rod(0.034, (0, 0, 0.045), (0, 0, 0.1)),
-        b.cylinder(0.006, (0, 0, 0.09), (0, 0, height)),
-        b.rod(0.011, (0, 0, height - 0.08), (0, 0, height)),
-        color="white",
+        b.rod(0.034, 0.045, 0.1),
+        b.cylinder(0.006, 0.09, height),
+        b.rod(0.011, height - 0.08, height),
+        look="white",
     )
-    b.slide("brush", parent="holder", axis=Z, upper=0.2)
+    b.slide("brush", "holder", Z, 0.2)
 
 
-@kind(
-    "toilet paper holder",
-    walls=2.5,
-    words="toilet roll holder, paper roll holder",
-    size=length(0.9, 1.2),
-)
+@kind(walls=2.5, words="toilet roll holder, paper roll holder", size=(0.9, 1.2))
 def toilet_paper_holder(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -916,108 +708,88 @@ def toilet_paper_holder(b: ObjectBuilder, size: float) -> None:
         box(p(-0.07, 0, 0), p(0.07, 0.01, 0.1)),
         [box(p(s * 0.058, -0.07, 0.02), p(s * 0.066, 0.005, 0.05)) for s in (-1, 1)],
         b.cylinder(0.008 * size, p(-0.06, -0.06, 0.035), p(0.06, -0.06, 0.035)),
-        material="chrome",
+        look="chrome",
     )
     b.part(
         "roll",
         b.tube(0.05 * size, 0.0095 * size, p(-0.05, -0.06, 0.035), p(0.05, -0.06, 0.035)),
-        material="cardboard",
-        color="white",
+        look="white cardboard",
     )
-    b.spin("roll", parent="mount", axis=X, pivot=p(0, -0.06, 0.035))
-    b.part("cover", box(p(-0.062, -0.13, 0.094), p(0.062, -0.002, 0.098)), material="chrome")
-    b.hinge("cover", parent="mount", axis=-X, pivot=p(0, -0.002, 0.098), upper=1.4)
+    b.spin("roll", "mount", X, p(0, -0.06, 0.035))
+    b.part("cover", box(p(-0.062, -0.13, 0.094), p(0.062, -0.002, 0.098)), look="chrome")
+    b.hinge("cover", "mount", -X, p(0, -0.002, 0.098), 1.4)
 
 
-@kind(
-    "paper towel dispenser",
-    words="towel dispenser, tissue dispenser",
-    width=length(0.25, 0.35),
-    height=length(0.3, 0.42),
-)
+@kind(words="towel dispenser, tissue dispenser", width=(0.25, 0.35), height=(0.3, 0.42))
 def paper_towel_dispenser(b: ObjectBuilder, width: float, height: float) -> None:
     b.part(
         "back",
-        box((-width / 2, 0, 0), (width / 2, 0.015, height)),
+        slab(width / 2, (0, 0.015), (0, height)),
         [box((s * width / 2, -0.19, 0), (s * (width / 2 - 0.006), 0.01, height)) for s in (-1, 1)],
-        color="white",
+        look="white",
     )
     b.part(
         "cover",
-        box((-width / 2 + 0.008, -0.2, 0), (width / 2 - 0.008, -0.193, height)),
-        box((-width / 2 + 0.008, -0.2, height - 0.006), (width / 2 - 0.008, -0.002, height)),
-        color="grey",
+        slab(width / 2 - 0.008, (-0.2, -0.193), (0, height)),
+        slab(width / 2 - 0.008, (-0.2, -0.002), (height - 0.006, height)),
+        look="grey",
     )
-    b.hinge("cover", parent="back", axis=X, pivot=(0, -0.2, 0), upper=1.3)
+    b.hinge("cover", "back", X, (0, -0.2, 0), 1.3)
 
 
-@kind(
-    "electric toothbrush",
-    words="toothbrush",
-    size=length(0.9, 1.1),
-)
+@kind(words="toothbrush", size=(0.9, 1.1))
 def electric_toothbrush(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "handle",
         b.rod(0.014 * size, p(0, 0, 0.016), p(0, 0, 0.12)),
         b.cone(0.012 * size, 0.004 * size, p(0, 0, 0.12), p(0, 0, 0.2)),
-        color="white",
+        look="white",
     )
-    b.part("head", b.cylinder(0.007 * size, p(0, -0.0065, 0.195), p(0, -0.016, 0.195)), color="blue")
-    b.hinge("head", parent="handle", axis=-Y, pivot=p(0, 0, 0.195), upper=0.6, lower=-0.6)
+    b.part("head", b.cylinder(0.007 * size, p(0, -0.0065, 0.195), p(0, -0.016, 0.195)), look="blue")
+    b.hinge("head", "handle", -Y, p(0, 0, 0.195), 0.6, lower=-0.6)
     b.bore("handle", box(p(-0.006, -0.03, 0.08), p(0.006, -0.008, 0.1)))
-    b.part("button", box(p(-0.0055, -0.017, 0.0805), p(0.0055, -0.011, 0.0995)), material="rubber", color="grey")
-    b.slide("button", parent="handle", axis=Y, upper=0.002)
+    b.part("button", box(p(-0.0055, -0.017, 0.0805), p(0.0055, -0.011, 0.0995)), look="grey rubber")
+    b.slide("button", "handle", Y, 0.002)
 
 
-@kind("hair straightener", words="flat iron", length=length(0.22, 0.3))
+@kind(words="flat iron", length=(0.22, 0.3))
 def hair_straightener(b: ObjectBuilder, length: float) -> None:
     b.part(
         "arm",
-        box((0, -0.016, 0), (length, 0.016, 0.014)),
+        slab((0, length), 0.016, (0, 0.014)),
         box((-0.02, -0.016, 0), (0.01, -0.011, 0.03)),
         box((-0.02, 0.011, 0), (0.01, 0.016, 0.03)),
-        color="black",
+        look="black",
     )
     b.part(
         "other_arm",
-        box((0.012, -0.016, 0.017), (length, 0.016, 0.031)),
-        box((-0.018, -0.009, 0.017), (0.02, 0.009, 0.031)),
-        color="black",
+        slab((0.012, length), 0.016, (0.017, 0.031)),
+        slab((-0.018, 0.02), 0.009, (0.017, 0.031)),
+        look="black",
     )
-    b.hinge("other_arm", parent="arm", axis=-Y, pivot=(-0.005, 0, 0.023), upper=0.35)
+    b.hinge("other_arm", "arm", -Y, (-0.005, 0, 0.023), 0.35)
 
 
-@kind("safety razor", words="wet razor, disposable razor, razor, shaving razor", length=length(0.1, 0.14))
+@kind(words="wet razor, disposable razor, razor, shaving razor", length=(0.1, 0.14))
 def safety_razor(b: ObjectBuilder, length: float) -> None:
-    b.part(
-        "handle",
-        b.rod(0.006, (0, 0, 0), (0, 0, length)),
-        box((-0.004, -0.004, length), (0.004, 0.004, length + 0.012)),
-        material="chrome",
-    )
+    b.part("handle", b.rod(0.006, 0, length), slab(0.004, 0.004, (length, length + 0.012)), look="chrome")
     b.part(
         "head",
-        box((-0.02, -0.012, length + 0.014), (0.02, 0.004, length + 0.022)),
-        [box((s * 0.0055, -0.004, length + 0.005), (s * 0.008, 0.004, length + 0.015)) for s in (-1, 1)],
-        color="blue",
+        slab(0.02, (-0.012, 0.004), (length + 0.014, length + 0.022)),
+        [slab((s * 0.0055, s * 0.008), 0.004, (length + 0.005, length + 0.015)) for s in (-1, 1)],
+        look="blue",
     )
-    b.hinge("head", parent="handle", axis=X, pivot=(0, 0, length + 0.008), upper=0.4, lower=-0.4)
+    b.hinge("head", "handle", X, (0, 0, length + 0.008), 0.4, lower=-0.4)
 
 
-@kind(
-    "folding grab bar",
-    words="support rail, toilet rail, folding support bar",
-    length=length(0.6, 0.85),
-)
+@kind(words="support rail, toilet rail, folding support bar", length=(0.6, 0.85))
 def folding_grab_bar(b: ObjectBuilder, length: float) -> None:
     b.part(
         "plate",
-        box((-0.05, 0, 0), (0.05, 0.02, 0.25)),
+        slab(0.05, (0, 0.02), (0, 0.25)),
         [box((s * 0.022, -0.06, 0.19), (s * 0.03, 0.01, 0.25)) for s in (-1, 1)],
-        material="steel",
-        color="white",
+        look="white steel",
     )
     b.part(
         "bar",
@@ -1025,42 +797,32 @@ def folding_grab_bar(b: ObjectBuilder, length: float) -> None:
         b.cylinder(0.016, (0, -0.04, 0.22), (0, -length, 0.22)),
         b.cylinder(0.016, (0, -length, 0.084), (0, -length, 0.236)),
         b.cylinder(0.016, (0, -0.04, 0.09), (0, -0.04, 0.236)),
-        material="steel",
-        color="white",
+        look="white steel",
     )
-    b.hinge("bar", parent="plate", axis=-X, pivot=(0, -0.04, 0.22), upper=1.5)
+    b.hinge("bar", "plate", -X, (0, -0.04, 0.22), 1.5)
 
 
-@kind(
-    "shower seat",
-    words="folding wall seat, tip up seat",
-    width=length(0.35, 0.6),
-    depth=length(0.3, 0.45),
-)
+@kind(words="folding wall seat, tip up seat", width=(0.35, 0.6), depth=(0.3, 0.45))
 def shower_seat(b: ObjectBuilder, width: float, depth: float) -> None:
     b.part(
         "mount",
-        box((-width / 2, 0, 0), (width / 2, 0.02, 0.16)),
+        slab(width / 2, (0, 0.02), (0, 0.16)),
         [box((s * width * 0.4, -0.03, 0.03), (s * width * 0.44, 0.01, 0.09)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
-    b.part("seat", box((-0.38 * width, -depth, 0.05), (0.38 * width, -0.012, 0.08)), material="wood", color="white")
-    b.hinge("seat", parent="mount", axis=-X, pivot=(0, -0.02, 0.065), upper=1.4)
+    b.part("seat", slab(0.38 * width, (-depth, -0.012), (0.05, 0.08)), look="white wood")
+    b.hinge("seat", "mount", -X, (0, -0.02, 0.065), 1.4)
 
 
-@kind(
-    "hand dryer",
-    words="jet dryer, wall dryer",
-    width=length(0.22, 0.32),
-)
+@kind(words="jet dryer, wall dryer", width=(0.22, 0.32))
 def hand_dryer(b: ObjectBuilder, width: float) -> None:
-    b.part("body", box((-width / 2, 0, 0), (width / 2, 0.16, width)), material="metal", color="white")
-    b.cut("body", box((-0.46 * width, 0.008, 0.008), (0.46 * width, 0.152, width - 0.008)))
-    button(b, "button", parent="body", at=(0, 0, 0.7 * width), size=(0.05, 0.05), high=0.008, out=-Y, is_round=True)
+    b.part("body", slab(width / 2, (0, 0.16), (0, width)), look="white metal")
+    b.cut("body", slab(0.46 * width, (0.008, 0.152), (0.008, width - 0.008)))
+    button(b, "button", "body", (0, 0, 0.7 * width), (0.05, 0.05), 0.008, -Y, is_round=True)
     b.part(
         "nozzle",
         b.cylinder(0.03, (0, 0.08, -0.001), (0, 0.08, -0.03)),
         b.cylinder(0.018, (0, 0.09, -0.02), (0, 0.03, -0.05)),
-        material="chrome",
+        look="chrome",
     )
-    b.spin("nozzle", parent="body", axis=Z, pivot=(0, 0.08, 0))
+    b.spin("nozzle", "body", Z, (0, 0.08, 0))

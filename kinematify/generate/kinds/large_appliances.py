@@ -13,7 +13,7 @@ from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
-from kinematify.generate.procedural.solids import X, Y, box, cylinder, tray, union
+from kinematify.generate.procedural.solids import X, Y, box, cylinder, slab, tray, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "oven",
     words=(
         "stove, cooker, range, kitchen stove, range cooker, gas stove, gas oven, electric stove, cooking range, gas "
         "cooker, kitchen range, gas range, pizza oven, baking oven, electric oven, bread oven, stone oven, electric "
@@ -98,7 +97,7 @@ def oven(
     if top == "burners":
         w.cut("body", burners(width, depth, height))
     fitting = Fitting(clearance=clearance, grip=handle, rest=open)
-    add_door(w, "door", parent="body", opening=opening, fitting=fitting, side="bottom", hinge=hinge)
+    add_door(w, "door", "body", opening, fitting, side="bottom", hinge=hinge)
     w.cut("door", window(opening, clearance))
     for k in range(knobs):
         x = ((k + 0.5) / knobs - 0.5) * 0.9 * width
@@ -106,17 +105,16 @@ def oven(
             knob(
                 b,
                 f"knob_{k + 1}",
-                parent="body",
-                at=(x, 0, height - 0.5 * strip),
-                out=-Y,
-                radius=min(0.3 * strip, 0.35 * width / knobs),
+                "body",
+                (x, 0, height - 0.5 * strip),
+                min(0.3 * strip, 0.35 * width / knobs),
+                -Y,
                 reach=4.7,
             )
     w.settle()
 
 
 @kind(
-    "microwave",
     words="microwave oven",
     title="microwave oven",
     material="plastic",
@@ -150,7 +148,7 @@ def microwave(
     its_panel = box((border + 0.002, -wall - clearance, 0), (0.5 * width, 0.001, height))
     w.body("body", carcass(width, height, behind, [opening]), its_panel)
     fitting = Fitting(clearance=clearance, grip=handle, rest=open)
-    add_door(w, "door", parent="body", opening=opening, fitting=fitting, side="left", hinge=hinge)
+    add_door(w, "door", "body", opening, fitting, side="left", hinge=hinge)
     margin = 0.15 * opening.width
     front = -clearance - wall
     recess = box((opening.left + margin, -1.0, margin), (border - 1.2 * margin, front + 0.003, height - margin))
@@ -167,7 +165,7 @@ def microwave(
     plate = cylinder(radius, (*centre, level), (*centre, level + 0.012))
     hollow = cylinder(radius - 0.006, (*centre, level + 0.005), (*centre, level + 0.02))
     w.body("turntable", rotor, plate - hollow, material="glass")
-    w.turns("turntable", parent="body", axis=(0, 0, 1), pivot=pivot)
+    w.turns("turntable", "body", (0, 0, 1), pivot)
     # Knobs above buttons, in the middle of the panel.
     its_width = the_panel * width
     border_2 = 0.55 * height if knobs else 0.85 * height
@@ -176,15 +174,7 @@ def microwave(
         radius_2 = min(0.3 * its_width, 0.3 * height / knobs)
         z = border_2 + (knobs - k - 0.5) * (0.95 * height - border_2) / knobs
         with drawn_on(w, clearance, open) as b:
-            knob(
-                b,
-                f"knob_{k + 1}",
-                parent="body",
-                at=(x, front, z),
-                out=-Y,
-                radius=min(radius_2, 0.17 * height / knobs),
-                reach=4.7,
-            )
+            knob(b, f"knob_{k + 1}", "body", (x, front, z), min(radius_2, 0.17 * height / knobs), -Y, reach=4.7)
     columns, rows = (3, -(-buttons // 3)) if buttons > 3 else (1, max(1, buttons))
     size = (0.8 * its_width, border_2 - 0.1 * height)
     pitch = (min(size[0] / columns, 0.03), min(size[1] / rows, 0.03))
@@ -193,12 +183,11 @@ def microwave(
     for k, (u, v) in enumerate(grid(buttons, columns, area)):
         cap = (0.9 * pitch[0] - 2 * clearance - 0.002, 0.9 * pitch[1] - 2 * clearance - 0.002)
         with drawn_on(w, clearance) as b:
-            button(b, f"button_{k + 1}", parent="body", at=(x + u, front, middle + v), out=-Y, size=cap, high=0.003)
+            button(b, f"button_{k + 1}", "body", (x + u, front, middle + v), cap, 0.003, -Y)
     w.settle()
 
 
 @kind(
-    "dishwasher",
     words="dish washer, dish washing machine",
     material="metal",
     width=length(0.4, 1.0, default=0.6, usual=(0.45, 0.62), help="Outer width."),
@@ -255,19 +244,13 @@ def dishwasher(
     opening = Bay(left=-0.5 * width, right=0.5 * width, bottom=plinth, top=height, depth=depth, wall=the_wall)
     w.body("body", carcass(width, height, depth, [opening]))
     fitting = Fitting(clearance=clearance, grip=handle, rest=open)
-    add_door(w, "door", parent="body", opening=opening, fitting=fitting, side="bottom", hinge=hinge)
+    add_door(w, "door", "body", opening, fitting, side="bottom", hinge=hinge)
     # A row of buttons at the upper edge of the door, above its handle.
     for k in range(buttons):
         x = (k - 0.5 * (buttons - 1)) * 0.03
         with drawn_on(w, clearance) as b:
             button(
-                b,
-                f"button_{k + 1}",
-                parent="door",
-                at=(x, -clearance - the_wall, opening.top - 0.012),
-                out=-Y,
-                size=(0.018, 0.01),
-                high=0.003,
+                b, f"button_{k + 1}", "door", (x, -clearance - the_wall, opening.top - 0.012), (0.018, 0.01), 0.003, -Y
             )
     floor = opening.bottom + 0.5 * the_wall
     middle = 0.5 * (opening.depth - the_wall)
@@ -277,9 +260,9 @@ def dishwasher(
     w.cut("body", hole)
     half = 0.42 * min(opening.width - the_wall, opening.depth - the_wall)
     level = pivot[2] + clearance + 0.012
-    blade = box((-half, middle - 0.02, level), (half, middle + 0.02, level + 0.01))
+    blade = slab(half, (middle - 0.02, middle + 0.02), (level, level + 0.01))
     w.body("spray_arm", rotor, blade)
-    w.turns("spray_arm", parent="body", axis=(0, 0, 1), pivot=pivot)
+    w.turns("spray_arm", "body", (0, 0, 1), pivot)
     # Baskets on rails at both walls; they come forward as far as the closed door lets them.
     half_2 = 0.5 * (opening.width - the_wall)
     back = opening.depth - the_wall
@@ -298,12 +281,11 @@ def dishwasher(
         upper = (half_2 - 0.004 - clearance, back - clearance, level_2 + 0.75 * pitch)
         w.body(f"rack_{k_2 + 1}", basket(lower, upper), material="steel")
         middle_2 = (0.0, 0.5 * (lower[1] + upper[1]), lower[2])
-        w.slides(f"rack_{k_2 + 1}", parent="body", axis=(0, -1, 0), pivot=middle_2, limits=(0.0, travel), rest=open)
+        w.slides(f"rack_{k_2 + 1}", "body", (0, -1, 0), middle_2, (0.0, travel), rest=open)
     w.settle()
 
 
 @kind(
-    "fridge",
     words="refrigerator, freezer, fridge freezer, icebox, minibar, mini fridge, kitchen fridge, wine cooler",
     material="metal",
     width=length(0.4, 1.5, default=0.6, usual=(0.55, 0.9), help="Outer width."),
@@ -404,13 +386,12 @@ def fridge(
     for k, (field, opening) in enumerate(zip(fields, openings, strict=False)):
         side = hinge_side if field[1] - field[0] == 1.0 else "left" if field[0] == 0.0 else "right"
         name = f"door_{k + 1}"
-        add_door(w, name, parent="body", opening=opening, fitting=fitting, side=side, hinge=hinge)
+        add_door(w, name, "body", opening, fitting, side=side, hinge=hinge)
         w.add(name, bins(opening, fitting.clearance))
     w.settle()
 
 
 @kind(
-    "washing machine",
     words=(
         "washer, dryer, tumble dryer, laundry machine, clothes washer, front loading washer, front loading washing "
         "machine, toy washing machine, laundry washer, clothes dryer, tumble drier"
@@ -443,7 +424,7 @@ def washing_machine(
     wall = 0.03
     hinge = (0.006, 0.09)
     door = 0.03
-    front = box((-0.5 * width, 0, 0), (0.5 * width, depth, height))
+    front = slab(0.5 * width, (0, depth), (0, height))
     tub = 0.5 * min(width, height - strip) - wall
     centre = (0.0, 0.5 * (height - strip))
     cavity = cylinder(tub, (0, wall, centre[1]), (0, depth - wall, centre[1]))
@@ -460,10 +441,10 @@ def washing_machine(
     boss, hole, rotor = stub(pivot, (0, -1, 0), 0.03, clearance, length=0.022)
     w.add("body", boss)
     w.cut("body", hole)
-    rib = box((-0.012, start[1] + 0.01, level + 0.75 * radius), (0.012, end[1], level + radius - 0.002))
+    rib = slab(0.012, (start[1] + 0.01, end[1]), (level + 0.75 * radius, level + radius - 0.002))
     ribs = [rib.translate((0, 0, -level)).rotate((0, 120 * k, 0)).translate((0, 0, level)) for k in range(3)]
     w.body("drum", rotor, cylinder(radius, start, end) - inner, ribs, material="steel")
-    w.turns("drum", parent="body", axis=(0, -1, 0), pivot=pivot)
+    w.turns("drum", "body", (0, -1, 0), pivot)
     # A round door on a barrel hinge beside its rim.
     radius_2 = 0.86 * tub
     level_2 = centre[1]
@@ -483,7 +464,7 @@ def washing_machine(
     grip_at = -side * 0.88 * radius_2
     grip = box((grip_at - 0.01, front_2 - 0.012, level_2 - 0.05), (grip_at + 0.01, front_2 + 0.001, level_2 + 0.05))
     w.body("door", disc - glass, of_door, grip)
-    w.turns("door", parent="body", axis=(0, 0, side), pivot=pivot_2, limits=(0.0, 1.9), rest=open)
+    w.turns("door", "body", (0, 0, side), pivot_2, (0.0, 1.9), rest=open)
     # From left to right: drawer, knob, buttons.
     level_3 = height - 0.5 * strip
     opening = Bay(
@@ -495,9 +476,7 @@ def washing_machine(
         wall=0.012,
     )
     w.cut("body", room(opening))
-    add_drawer(
-        w, "drawer", parent="body", opening=opening, fitting=Fitting(clearance=clearance, grip="edge", rest=open)
-    )
+    add_drawer(w, "drawer", "body", opening, Fitting(clearance=clearance, grip="edge", rest=open))
     with drawn_on(w, clearance, open) as b:
         mechanisms.knob(
             b,
@@ -512,19 +491,12 @@ def washing_machine(
         x = (0.17 + 0.3 * (k + 0.5) / buttons) * width
         with drawn_on(w, clearance) as b:
             button(
-                b,
-                f"button_{k + 1}",
-                parent="body",
-                at=(x, 0, level_3),
-                out=-Y,
-                size=(0.2 * width / buttons - 2 * clearance, 0.014),
-                high=0.004,
+                b, f"button_{k + 1}", "body", (x, 0, level_3), (0.2 * width / buttons - 2 * clearance, 0.014), 0.004, -Y
             )
     w.settle()
 
 
 @kind(
-    "safe",
     words=(
         "strongbox, strong box, safe box, money safe, bank safe, office safe, home safe, hotel room safe, gun safe, "
         "wall safe, hotel safe"
@@ -559,33 +531,25 @@ def safe(
     opening = Bay(left=-0.5 * width, right=0.5 * width, bottom=0.0, top=height, depth=depth, wall=its_wall)
     w.body("body", carcass(width, height, depth, [opening]))
     fitting = Fitting(clearance=clearance, grip="none", rest=open)
-    add_door(w, "door", parent="body", opening=opening, fitting=fitting, side="left", hinge=hinge)
+    add_door(w, "door", "body", opening, fitting, side="left", hinge=hinge)
     front = -clearance - its_wall
     size = min(width, height)
     if lock == "dial":
         with drawn_on(w, clearance) as b:
-            knob(b, "dial", parent="door", at=(0, front, 0.68 * height), out=-Y, radius=min(0.05, 0.12 * size))
+            knob(b, "dial", "door", (0, front, 0.68 * height), min(0.05, 0.12 * size), -Y)
     else:
         pad = min(0.12, 0.3 * size)
         for k, (x, z) in enumerate(grid(12, 3, (0.75 * pad, pad))):
             cap = 0.2 * pad - 2 * clearance
             with drawn_on(w, clearance) as b:
-                button(
-                    b,
-                    f"button_{k + 1}",
-                    parent="door",
-                    at=(x, front, 0.68 * height + z),
-                    out=-Y,
-                    size=(cap, 0.9 * cap),
-                    high=0.003,
-                )
+                button(b, f"button_{k + 1}", "door", (x, front, 0.68 * height + z), (cap, 0.9 * cap), 0.003, -Y)
     # A lever or a wheel of three spokes that draws the bolts.
     place = [0, front, 0.3 * height]
     length = min(0.12, 0.22 * size)
     if handle == "wheel":
         with drawn_on(w, clearance) as b:
-            hand_wheel(b, "handle", parent="door", at=place, out=-Y, radius=length, spokes=3, rim=False, reach=0.5 * pi)
+            hand_wheel(b, "handle", "door", place, length, -Y, spokes=3, rim=False, reach=0.5 * pi)
     else:
         with drawn_on(w, clearance) as b:
-            lever(b, "handle", parent="door", at=place, out=-Y, along=X, length=1.2 * length, reach=-0.5 * pi)
+            lever(b, "handle", "door", place, -Y, X, 1.2 * length, reach=-0.5 * pi)
     w.settle()

@@ -8,59 +8,53 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole, yes
+from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import button, case, crank, knob, wheel
 from kinematify.generate.library.panels import drawer, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "toy train",
-    words="wooden train, toy locomotive",
-    length=length(0.12, 0.3),
-    width=length(0.04, 0.08),
-    radius=length(0.012, 0.025),
-)
+@kind(words="wooden train, toy locomotive", length=(0.12, 0.3), width=(0.04, 0.08), radius=(0.012, 0.025))
 def toy_train(b: ObjectBuilder, length: float, width: float, radius: float) -> None:
     """A locomotive of blocks with four to eight wheels."""
     b.part(
         "engine",
-        box((-length / 2, -width / 2, radius), (length / 2, width / 2, 2.5 * radius)),
+        slab(length / 2, width / 2, (radius, 2.5 * radius)),
         b.cylinder(
             0.4 * width, (-0.1 * length, 0, 2.5 * radius + 0.3 * width), (length / 2, 0, 2.5 * radius + 0.3 * width)
         ),
-        box((-length / 2, -width / 2, 2 * radius), (-0.1 * length, width / 2, 2.5 * radius + 1.2 * width)),
+        slab((-length / 2, -0.1 * length), width / 2, (2 * radius, 2.5 * radius + 1.2 * width)),
         b.cylinder(0.15 * width, (0.35 * length, 0, 2.5 * radius), (0.35 * length, 0, 2.5 * radius + 1.1 * width)),
-        material="wood",
+        look="wood",
     )
     for i, x in enumerate(spread(b.count(2, 4), -0.48 * length, 0.48 * length)):
         for s in (-1, 1):
             wheel(
                 b,
                 f"wheel_{i}_{int(s > 0)}",
-                parent="engine",
-                middle=(x, s * (width / 2 + 0.35 * radius), radius),
-                radius=min(radius, 0.11 * length),
-                wide=0.4 * radius,
-                out=s * Y,
+                "engine",
+                (x, s * (width / 2 + 0.35 * radius), radius),
+                min(radius, 0.11 * length),
+                0.4 * radius,
+                s * Y,
                 axle=0.15 * radius,
             )
 
 
-@kind("pull along animal", words="pull along dog, pull toy, pull along toy, toy animal", size=length(0.08, 0.2))
+@kind(words="pull along dog, pull toy, pull along toy, toy animal", size=(0.08, 0.2))
 def pull_along_animal(b: ObjectBuilder, size: float) -> None:
     """A body on wheels, a head that nods, a tail that wags."""
     b.part(
         "body",
         b.rod(0.35 * size, (-0.5 * size, 0, 0.8 * size), (0.5 * size, 0, 0.8 * size)),
         [
-            box((x * size - 0.1 * size, -0.3 * size, 0.2 * size), (x * size + 0.1 * size, 0.3 * size, 0.7 * size))
+            slab((x * size - 0.1 * size, x * size + 0.1 * size), 0.3 * size, (0.2 * size, 0.7 * size))
             for x in (-0.45, 0.45)
         ],
-        material="wood",
+        look="wood",
     )
     g = b.gap(0.1 * size)
     x = 0.85 * size + g
@@ -73,55 +67,41 @@ def pull_along_animal(b: ObjectBuilder, size: float) -> None:
         b.cone(0.12 * size, 0.05 * size, (x + 0.5 * size, 0, 1.05 * size), (x + 0.75 * size, 0, 1 * size)),
     )
     b.hinge(
-        "head",
-        parent="body",
-        axis=Y,
-        pivot=(x + (0.3 * size if b.style.has_bore else 0), 0, 1.1 * size),
-        upper=0.25,
-        lower=-0.25,
-        ajar=False,
+        "head", "body", Y, (x + (0.3 * size if b.style.has_bore else 0), 0, 1.1 * size), 0.25, lower=-0.25, ajar=False
     )
     b.part("tail", b.rod(0.06 * size, (-0.9 * size - g, 0, 0.95 * size), (-1.2 * size, 0, 1.3 * size)))
-    b.hinge(
-        "tail",
-        parent="body",
-        axis=X if b.maybe() else Z,
-        pivot=(-0.9 * size - g, 0, 0.95 * size),
-        upper=0.3,
-        lower=-0.3,
-        ajar=False,
-    )
+    b.hinge("tail", "body", X if b.maybe() else Z, (-0.9 * size - g, 0, 0.95 * size), 0.3, lower=-0.3, ajar=False)
     for i, x in enumerate((-0.45 * size, 0.45 * size)):
         for s in (-1, 1):
             wheel(
                 b,
                 f"wheel_{i}_{int(s > 0)}",
-                parent="body",
-                middle=(x, s * 0.38 * size, 0.22 * size),
-                radius=0.22 * size,
-                wide=0.1 * size,
-                out=s * Y,
+                "body",
+                (x, s * 0.38 * size, 0.22 * size),
+                0.22 * size,
+                0.1 * size,
+                s * Y,
                 axle=0.03 * size,
             )
 
 
-@kind("jointed doll", words="doll, puppet, toy doll, marionette, mannequin", size=length(0.1, 1.0))
+@kind("jointed doll", words="doll, puppet, toy doll, marionette, mannequin", size=(0.1, 1.0))
 def articulated_doll(b: ObjectBuilder, size: float) -> None:
     """Arms, legs and a head on a torso."""
     g = b.gap(0.05 * size)
     b.part(
         "torso",
-        box((-0.18 * size, -0.1 * size, 0.5 * size), (0.18 * size, 0.1 * size, 0.95 * size)),
-        b.cylinder(0.05 * size, (0, 0, 0.94 * size), (0, 0, 1 * size)),
-        material="wood",
+        slab(0.18 * size, 0.1 * size, (0.5 * size, 0.95 * size)),
+        b.cylinder(0.05 * size, 0.94 * size, 1 * size),
+        look="wood",
     )
     b.part("head", ball(0.13 * size, (0, 0, 1.13 * size + g)))
-    b.hinge("head", parent="torso", axis=Z, pivot=(0, 0, 1 * size), upper=1.3, lower=-1.3, ajar=False)
+    b.hinge("head", "torso", Z, (0, 0, 1 * size), 1.3, lower=-1.3, ajar=False)
     for s, side in ((-1, "right"), (1, "left")):
         x = s * (0.18 * size + g)
         top = vector(x + s * 0.05 * size, 0, 0.9 * size)
         b.part(f"arm_{side}", b.rod(0.05 * size, top, top - 0.4 * size * Z))
-        b.hinge(f"arm_{side}", parent="torso", axis=-X, pivot=(x, 0, 0.9 * size), upper=2.5, lower=-0.5, ajar=False)
+        b.hinge(f"arm_{side}", "torso", -X, (x, 0, 0.9 * size), 2.5, lower=-0.5, ajar=False)
         hip = vector(s * 0.09 * size, 0, 0.5 * size - g)
         b.part(
             f"leg_{side}",
@@ -131,10 +111,10 @@ def articulated_doll(b: ObjectBuilder, size: float) -> None:
         )
         b.hinge(
             f"leg_{side}",
-            parent="torso",
-            axis=-X,
-            pivot=hip,
-            upper=0.02 if b.style.has_bore else 1.2,
+            "torso",
+            -X,
+            hip,
+            0.02 if b.style.has_bore else 1.2,
             lower=-0.02 if b.style.has_bore else -0.4,
             ajar=False,
         )
@@ -148,44 +128,37 @@ def articulated_doll(b: ObjectBuilder, size: float) -> None:
                     (knee[0] + 0.06 * size, 0.06 * size, knee[2] - 0.17 * size),
                 ),
             )
-            b.hinge(
-                f"shin_{side}",
-                parent=f"leg_{side}",
-                axis=X,
-                pivot=knee,
-                upper=0.02 if b.style.has_bore else 1.5,
-                ajar=False,
-            )
+            b.hinge(f"shin_{side}", f"leg_{side}", X, knee, 0.02 if b.style.has_bore else 1.5, ajar=False)
 
 
-@kind("jack in the box", size=length(0.08, 0.2))
+@kind(size=(0.08, 0.2))
 def jack_in_the_box(b: ObjectBuilder, size: float) -> None:
     """A lid and a crank at the side."""
-    case(b, "box", lower=(-size / 2, -size / 2, 0), upper=(size / 2, size / 2, size), opening=Z)
+    case(b, "box", (-size / 2, -size / 2, 0), (size / 2, size / 2, size), opening=Z)
     leaf(
         b,
         "lid",
-        parent="box",
-        lower=(-size / 2, -size / 2, size),
-        upper=(size / 2, size / 2, 1.06 * size),
+        "box",
+        (-size / 2, -size / 2, size),
+        (size / 2, size / 2, 1.06 * size),
         hinge=Y,
         out=Z,
         reach=2.2,
         handle=False,
     )
-    crank(b, "crank", parent="box", at=(size / 2, 0, 0.5 * size), out=X, length=0.35 * size)
+    crank(b, "crank", "box", (size / 2, 0, 0.5 * size), X, 0.35 * size)
 
 
-@kind("abacus", words="counting frame, bead frame", width=length(0.15, 0.4), number=whole(2, 4))
+@kind(words="counting frame, bead frame", width=(0.15, 0.4), number=whole(2, 4))
 def abacus(b: ObjectBuilder, width: float, number: int) -> None:
     """Beads that slide on rods."""
     h = 0.18 * width * number
     r = 0.07 * width
     b.part(
         "frame",
-        [box((s * width / 2, -r, 0), (s * (width / 2 + 0.05 * width), r, h)) for s in (-1, 1)],
-        [box((-width / 2, -r, z), (width / 2, r, z + 0.05 * width)) for z in (0, h - 0.05 * width)],
-        material="wood",
+        [slab((s * width / 2, s * (width / 2 + 0.05 * width)), r, (0, h)) for s in (-1, 1)],
+        [slab(width / 2, r, (z, z + 0.05 * width)) for z in (0, h - 0.05 * width)],
+        look="wood",
     )
     g = b.gap(r) + 0.0001
     for i, z in enumerate(spread(number, 0.05 * width, h - 0.05 * width)):
@@ -193,24 +166,23 @@ def abacus(b: ObjectBuilder, width: float, number: int) -> None:
         m = b.count(1, 3)
         for k in range(m):
             x = -width / 2 + (0.06 + 0.13 * k) * width + 0.001
-            b.part(f"bead_{i}_{k}", b.cylinder(r, (x, 0, z), (x + 0.1 * width, 0, z)), material="wood")
+            b.part(f"bead_{i}_{k}", b.cylinder(r, (x, 0, z), (x + 0.1 * width, 0, z)), look="wood")
             b.bore(f"bead_{i}_{k}", b.cylinder(0.02 * width + 1.5 * g, (x - 1, 0, z), (x + 1, 0, z)))
             if k == m - 1:
-                b.slide(f"bead_{i}_{k}", parent="frame", axis=X, upper=0.4 * width, ajar=False)
+                b.slide(f"bead_{i}_{k}", "frame", X, 0.4 * width, ajar=False)
             else:
-                b.slide(f"bead_{i}_{k}", parent="frame", axis=X, upper=0.02 * width, ajar=False)
+                b.slide(f"bead_{i}_{k}", "frame", X, 0.02 * width, ajar=False)
 
 
 @kind(
-    "mixing console",
     words="mixing desk, audio mixer, sound mixer, dj mixer, fader panel, sound board, mixer console, dj controller",
-    width=length(0.3, 0.9),
-    depth=length(0.25, 0.45),
+    width=(0.3, 0.9),
+    depth=(0.25, 0.45),
     number=whole(1, 16, default=3, usual=(2, 5), words="fader, channel, slider"),
 )
 def mixing_console(b: ObjectBuilder, width: float, depth: float, number: int) -> None:
     """Faders in slots, knobs in a grid and pads on a desk: a mixer."""
-    case(b, "console", lower=(-width / 2, 0, 0), upper=(width / 2, depth, 0.06), material="steel")
+    case(b, "console", (-width / 2, 0, 0), (width / 2, depth, 0.06), material="steel")
     g = b.gap(0.005) + 0.0002
     for k, x in enumerate(spread(number, -0.46 * width, 0.46 * width)):
         b.cut("console", box((x - 0.003 - g, 0.04, 0.04), (x + 0.003 + g, 0.5 * depth, 0.07)))
@@ -220,16 +192,15 @@ def mixing_console(b: ObjectBuilder, width: float, depth: float, number: int) ->
             box((x - 0.003, y - 0.004, 0.045), (x + 0.003, y + 0.004, 0.07)),
             box((x - 0.012, y - 0.01, 0.062), (x + 0.012, y + 0.01, 0.075)),
         )
-        b.slide(f"fader_{k}", parent="console", axis=Y, upper=0.48 * depth - y, lower=0.05 - y, ajar=False)
+        b.slide(f"fader_{k}", "console", Y, 0.48 * depth - y, lower=0.05 - y, ajar=False)
         for i, q in enumerate(spread(b.count(1, 2), 0.55 * depth, 0.95 * depth)):
-            knob(b, f"knob_{k}_{i}", parent="console", at=(x, q, 0.06), radius=0.01, high=0.015, out=Z, reach=5.0)
+            knob(b, f"knob_{k}_{i}", "console", (x, q, 0.06), 0.01, Z, high=0.015, reach=5.0)
 
 
 @kind(
-    "weight machine",
     walls=60,
     words="weight stack, cable machine, gym machine",
-    height=length(1.6, 2.0),
+    height=(1.6, 2.0),
     number=whole(1, 3, words="plate, weight"),
 )
 def weight_machine(b: ObjectBuilder, height: float, number: int) -> None:
@@ -237,44 +208,43 @@ def weight_machine(b: ObjectBuilder, height: float, number: int) -> None:
     w = 0.5
     b.part(
         "frame",
-        box((-w / 2, -0.2, 0), (w / 2, 0.2, 0.06)),
-        box((-w / 2, -0.05, height), (w / 2, 0.05, height + 0.08)),
-        [box((s * w / 2 - 0.03, -0.04, 0), (s * w / 2 + 0.03, 0.04, height + 0.05)) for s in (-1, 1)],
+        slab(w / 2, 0.2, (0, 0.06)),
+        slab(w / 2, 0.05, (height, height + 0.08)),
+        [slab((s * w / 2 - 0.03, s * w / 2 + 0.03), 0.04, (0, height + 0.05)) for s in (-1, 1)],
         [b.cylinder(0.014, (s * 0.12, 0, 0.05), (s * 0.12, 0, height + 0.01)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
     g = b.gap(0.02) + 0.0003
     z = 0.06 + g
     for k in range(number):
         t = b.draw(0.06, 0.2)
-        b.part(f"plate_{k}", box((-0.2, -0.06, z), (0.2, 0.06, z + t)), material="steel")
+        b.part(f"plate_{k}", slab(0.2, 0.06, (z, z + t)), look="steel")
         b.bore(f"plate_{k}", [b.cylinder(0.014 + 1.5 * g, (s * 0.12, 0, 0), (s * 0.12, 0, height)) for s in (-1, 1)])
         b.slide(
             f"plate_{k}",
-            parent="frame",
-            axis=Z,
-            upper=0.02 if k < number - 1 and b.style.has_bore else 0.6 * height if k == number - 1 else 0.3,
+            "frame",
+            Z,
+            0.02 if k < number - 1 and b.style.has_bore else 0.6 * height if k == number - 1 else 0.3,
             ajar=False,
         )
         z = z + (t + (0.021 if b.style.has_bore else 0) + g)
 
 
 @kind(
-    "printer",
     words="laser printer, inkjet printer, copier, photocopier, copy machine, office printer",
-    width=length(0.35, 0.5),
-    depth=length(0.3, 0.45),
-    height=length(0.12, 0.35),
+    width=(0.35, 0.5),
+    depth=(0.3, 0.45),
+    height=(0.12, 0.35),
 )
 def printer(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A scanner lid, a paper tray, an output flap, buttons."""
-    case(b, "printer", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), material="plastic")
+    case(b, "printer", (-width / 2, 0, 0), (width / 2, depth, height), material="plastic")
     leaf(
         b,
         "lid",
-        parent="printer",
-        lower=(-width / 2, 0.06, height),
-        upper=(width / 2, depth, height + 0.03),
+        "printer",
+        (-width / 2, 0.06, height),
+        (width / 2, depth, height + 0.03),
         hinge=Y,
         out=Z,
         reach=1.3,
@@ -283,55 +253,43 @@ def printer(b: ObjectBuilder, width: float, depth: float, height: float) -> None
     drawer(
         b,
         "tray",
-        parent="printer",
-        lower=(-0.38 * width, 0, 0.015),
-        upper=(0.38 * width, 0.85 * depth, 0.35 * height),
+        "printer",
+        (-0.38 * width, 0, 0.015),
+        (0.38 * width, 0.85 * depth, 0.35 * height),
         out=-Y,
         handle=b.maybe(),
     )
     leaf(
         b,
         "flap",
-        parent="printer",
-        lower=(-0.4 * width, -0.012, 0.45 * height),
-        upper=(0.4 * width, 0, 0.85 * height),
+        "printer",
+        (-0.4 * width, -0.012, 0.45 * height),
+        (0.4 * width, 0, 0.85 * height),
         hinge=-Z,
         out=-Y,
         reach=1.4,
         handle=False,
     )
     for k, x in enumerate(spread(b.count(1, 4), -0.3 * width, 0.3 * width)):
-        button(
-            b,
-            f"button_{k}",
-            parent="printer",
-            at=(x, 0.03, height),
-            size=(0.02, 0.015),
-            high=0.003,
-            out=Z,
-            is_round=b.maybe(),
-        )
+        button(b, f"button_{k}", "printer", (x, 0.03, height), (0.02, 0.015), 0.003, Z, is_round=b.maybe())
 
 
 @kind(
-    "desktop computer",
     words="computer, personal computer, computer case, pc tower, pc, computer tower, pc case",
-    width=length(0.17, 0.22),
-    depth=length(0.4, 0.5),
-    height=length(0.38, 0.5),
+    width=(0.17, 0.22),
+    depth=(0.4, 0.5),
+    height=(0.38, 0.5),
 )
 def desktop_computer(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A side panel that slides or swings, a power button, drive trays."""
-    case(
-        b, "tower", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), opening=X, wall=0.006, material="steel"
-    )
+    case(b, "tower", (-width / 2, 0, 0), (width / 2, depth, height), opening=X, wall=0.006, material="steel")
     if b.maybe():
         leaf(
             b,
             "panel",
-            parent="tower",
-            lower=(width / 2, 0, 0),
-            upper=(width / 2 + 0.004, depth, height),
+            "tower",
+            (width / 2, 0, 0),
+            (width / 2 + 0.004, depth, height),
             hinge=Y,
             out=X,
             reach=1.6,
@@ -340,101 +298,83 @@ def desktop_computer(b: ObjectBuilder, width: float, depth: float, height: float
         )
     else:
         g = b.gap(0.01)
-        b.part("panel", box((width / 2 + g, 0, 0), (width / 2 + g + 0.004, depth, height)), material="steel")
-        b.slide("panel", parent="tower", axis=Y, upper=0.3)
+        b.part("panel", box((width / 2 + g, 0, 0), (width / 2 + g + 0.004, depth, height)), look="steel")
+        b.slide("panel", "tower", Y, 0.3)
     for k, z in enumerate(spread(b.count(1, 3), 0.6 * height, height - 0.02)):
         drawer(
-            b,
-            f"drive_{k}",
-            parent="tower",
-            lower=(-0.075, 0, z - 0.012),
-            upper=(0.075, 0.18, z + 0.012),
-            out=-Y,
-            handle=False,
-            travel=0.7,
+            b, f"drive_{k}", "tower", (-0.075, 0, z - 0.012), (0.075, 0.18, z + 0.012), out=-Y, handle=False, travel=0.7
         )
-    button(
-        b, "power", parent="tower", at=(0, 0, 0.5 * height), size=(0.02, 0.02), high=0.004, out=-Y, is_round=b.maybe()
-    )
+    button(b, "power", "tower", (0, 0, 0.5 * height), (0.02, 0.02), 0.004, -Y, is_round=b.maybe())
 
 
-@kind("camera on a tripod", words="video camera, camcorder, film camera on a tripod", height=length(0.6, 1.5))
+@kind("camera on a tripod", words="video camera, camcorder, film camera on a tripod", height=(0.6, 1.5))
 def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
     """A head that pans and tilts, a lens ring, legs that spread."""
     b.part(
-        "column",
-        b.cylinder(0.016, (0, 0, 0.5 * height), (0, 0, height)),
-        b.cylinder(0.035, (0, 0, 0.8 * height), (0, 0, 0.86 * height)),
-        material="metal",
+        "column", b.cylinder(0.016, 0.5 * height, height), b.cylinder(0.035, 0.8 * height, 0.86 * height), look="metal"
     )
     g = b.gap(0.02) + 0.0005
     for k, a in enumerate(np.arange(3) * 2 * pi / 3):
         u = vector(cos(a), sin(a), 0)
         p = (0.05 + g) * u + 0.84 * height * Z
-        b.part(f"leg_{k}", b.cylinder(0.012, p, p + 0.4 * height * u - 0.84 * height * Z), material="metal")
-        b.hinge(f"leg_{k}", parent="column", axis=np.cross(Z, u) * -1, pivot=p, upper=0.3, lower=-0.3, ajar=False)
+        b.part(f"leg_{k}", b.cylinder(0.012, p, p + 0.4 * height * u - 0.84 * height * Z), look="metal")
+        b.hinge(f"leg_{k}", "column", np.cross(Z, u) * -1, p, 0.3, lower=-0.3, ajar=False)
     b.part(
         "pan",
-        b.cylinder(0.03, (0, 0, height + g), (0, 0, height + 0.04)),
-        [box((s * 0.035 - 0.005, -0.02, height + 0.02), (s * 0.035 + 0.005, 0.02, height + 0.1)) for s in (-1, 1)],
-        material="metal",
+        b.cylinder(0.03, height + g, height + 0.04),
+        [slab((s * 0.035 - 0.005, s * 0.035 + 0.005), 0.02, (height + 0.02, height + 0.1)) for s in (-1, 1)],
+        look="metal",
     )
-    b.spin("pan", parent="column", axis=Z, pivot=(0, 0, height))
+    b.spin("pan", "column", Z, (0, 0, height))
     b.part(
         "camera",
-        box((-0.03 + g, -0.02, height + 0.05), (0.03 - g, 0.02, height + 0.12)),
-        box((-0.07, -0.03, height + 0.11), (0.07, 0.03, height + 0.2)),
+        slab(0.03 - g, 0.02, (height + 0.05, height + 0.12)),
+        slab(0.07, 0.03, (height + 0.11, height + 0.2)),
         b.cylinder(0.03, (0, -0.02, height + 0.155), (0, -0.06, height + 0.155)),
     )
-    b.hinge("camera", parent="pan", axis=X, pivot=(0, 0, height + 0.08), upper=0.3, lower=-0.3, ajar=False)
+    b.hinge("camera", "pan", X, (0, 0, height + 0.08), 0.3, lower=-0.3, ajar=False)
     b.part(
         "lens",
         b.tube(0.034, 0.0305 + g, (0, -0.035, height + 0.155), (0, -0.075, height + 0.155))
         if b.style.has_bore
         else b.cylinder(0.03, (0, -0.06, height + 0.155), (0, -0.1, height + 0.155)),
     )
-    b.spin("lens", parent="camera", axis=-Y, pivot=(0, -0.06, height + 0.155))
+    b.spin("lens", "camera", -Y, (0, -0.06, height + 0.155))
 
 
 @kind(
     "dentist treatment chair",
     walls=40,
     words="dentist chair, dental chair, treatment chair, dentist unit, examination chair",
-    z=length(0.45, 0.6),
+    z=(0.45, 0.6),
 )
 def dentist_chair(b: ObjectBuilder, z: float) -> None:
     """A seat on a column, a back, a head rest that slides."""
-    b.part(
-        "foot",
-        box((-0.3, -0.25, 0), (0.4, 0.25, 0.05)),
-        b.cylinder(0.09, (0, 0, 0.04), (0, 0, z - 0.1)),
-        material="steel",
-    )
+    b.part("foot", slab((-0.3, 0.4), 0.25, (0, 0.05)), b.cylinder(0.09, 0.04, z - 0.1), look="steel")
     g = b.gap(0.05) + 0.0005
     b.part(
         "seat",
-        box((-0.25, -0.28, z), (0.35, 0.28, z + 0.1)),
-        b.cylinder(0.07 if b.style.has_bore else 0.09, (0, 0, 0.15 if b.style.has_bore else z - 0.1), (0, 0, z + 0.01)),
-        box((0.3, -0.25, 0.25), (0.4, 0.25, z + 0.08)),
+        slab((-0.25, 0.35), 0.28, (z, z + 0.1)),
+        b.cylinder(0.07 if b.style.has_bore else 0.09, 0.15 if b.style.has_bore else z - 0.1, z + 0.01),
+        slab((0.3, 0.4), 0.25, (0.25, z + 0.08)),
     )
-    b.bore("foot", b.cylinder(0.07 + 1.5 * g, (0, 0, 0.1), (0, 0, 1)))
-    b.slide("seat", parent="foot", axis=Z, upper=0.25, ajar=False)
-    b.part("back", box((-0.37, -0.27, z + 0.02), (-0.25 - g, 0.27, z + 0.65)))
-    b.hinge("back", parent="seat", axis=-Y, pivot=(-0.25 - g, 0, z + 0.02), upper=1.2)
-    b.bore("back", box((-0.34 - g, -0.03 - g, z + 0.5), (-0.31 + g, 0.03 + g, z + 1)))
+    b.bore("foot", b.cylinder(0.07 + 1.5 * g, 0.1, 1))
+    b.slide("seat", "foot", Z, 0.25, ajar=False)
+    b.part("back", slab((-0.37, -0.25 - g), 0.27, (z + 0.02, z + 0.65)))
+    b.hinge("back", "seat", -Y, (-0.25 - g, 0, z + 0.02), 1.2)
+    b.bore("back", slab((-0.34 - g, -0.31 + g), 0.03 + g, (z + 0.5, z + 1)))
     b.part(
         "head_rest",
-        box((-0.34, -0.03, z + 0.52 if b.style.has_bore else z + 0.65), (-0.31, 0.03, z + 0.75)),
-        box((-0.38, -0.13, z + 0.7), (-0.28, 0.13, z + 0.85)),
+        slab((-0.34, -0.31), 0.03, (z + 0.52 if b.style.has_bore else z + 0.65, z + 0.75)),
+        slab((-0.38, -0.28), 0.13, (z + 0.7, z + 0.85)),
     )
-    b.slide("head_rest", parent="back", axis=Z, upper=0.1, ajar=False)
+    b.slide("head_rest", "back", Z, 0.1, ajar=False)
 
 
 @kind(
-    "garage door",
     words="sectional garage door, up and over door, overhead door, tilting garage door",
-    width=length(2.2, 3.0),
-    height=length(1.9, 2.3),
+    width=(2.2, 3.0),
+    height=(1.9, 2.3),
     lift=yes(0.45, words="vertical lift", help="It goes straight up before the wall above it."),
 )
 def garage_door(b: ObjectBuilder, width: float, height: float, lift: bool) -> None:
@@ -442,38 +382,27 @@ def garage_door(b: ObjectBuilder, width: float, height: float, lift: bool) -> No
     b.part(
         "frame",
         [box((s * width / 2, -0.1, 0), (s * (width / 2 + 0.2), 0.3, height + 0.2)) for s in (-1, 1)],
-        box((-width / 2 - 0.2, -0.1, height), (width / 2 + 0.2, 0.3, height * (2 if lift else 1) + 0.3)),
-        material="ceramic",
+        slab(width / 2 + 0.2, (-0.1, 0.3), (height, height * (2 if lift else 1) + 0.3)),
+        look="ceramic",
     )
     g = b.gap(0.05) + 0.003
     y = 0.3 + g if lift else 0.05
-    b.part(
-        "panel",
-        box(
-            (-width / 2 + (g if not lift else -0.05), y, 0.01),
-            (width / 2 - (g if not lift else -0.05), y + 0.05, height - g),
-        ),
-        material="steel",
-    )
+    b.part("panel", slab(width / 2 - (g if not lift else -0.05), (y, y + 0.05), (0.01, height - g)), look="steel")
     for z in spread(b.count(3, 5), 0.1, height - 0.1):
         b.part(
             "panel",
-            box(
-                (-0.45 * width, y - (0 if lift else 0.015), z - 0.08),
-                (0.45 * width, y + (0.065 if lift else 0), z + 0.08),
-            ),
+            slab(0.45 * width, (y - (0 if lift else 0.015), y + (0.065 if lift else 0)), (z - 0.08, z + 0.08)),
         )
     if lift:
-        b.slide("panel", parent="frame", axis=Z, upper=height)
+        b.slide("panel", "frame", Z, height)
     else:
-        b.hinge("panel", parent="frame", axis=-X, pivot=(0, 0.05, height - g), upper=1.57)
+        b.hinge("panel", "frame", -X, (0, 0.05, height - g), 1.57)
 
 
 @kind(
-    "sash window",
     words="sliding window, hung window, vertical sliding window, double hung window",
-    width=length(0.6, 1.2),
-    height=length(0.9, 1.5),
+    width=(0.6, 1.2),
+    height=(0.9, 1.5),
     flat=yes(0.5),
 )
 def sash_window(b: ObjectBuilder, width: float, height: float, flat: bool) -> None:
@@ -482,8 +411,8 @@ def sash_window(b: ObjectBuilder, width: float, height: float, flat: bool) -> No
     b.part(
         "frame",
         [box((s * width / 2, 0, 0), (s * (width / 2 + t), 0.1, height)) for s in (-1, 1)],
-        [box((-width / 2 - t, 0, z), (width / 2 + t, 0.1, z + t)) for z in (-t, height)],
-        material="wood",
+        [slab(width / 2 + t, (0, 0.1), (z, z + t)) for z in (-t, height)],
+        look="wood",
     )
     g = b.gap(0.02) + 0.0005
     for k in range(2):
@@ -499,16 +428,12 @@ def sash_window(b: ObjectBuilder, width: float, height: float, flat: bool) -> No
             high = (width / 2 - g, y + 0.035, z1)
         inner = vector(low[0] + 0.05, y + 0.014, low[2] + 0.05), vector(high[0] - 0.05, y + 0.021, high[2] - 0.05)
         pane = b.painted(box(*inner), material="glass")
-        b.part(f"sash_{k}", box(low, high) - box(inner[0] - Y, inner[1] + Y), pane, material="wood")
+        b.part(f"sash_{k}", box(low, high) - box(inner[0] - Y, inner[1] + Y), pane, look="wood")
         way = (-X if k == 0 else X) if flat else Z if k == 0 else -Z
-        b.slide(f"sash_{k}", parent="frame", axis=way, upper=(width if flat else height) / 2 - 0.05)
+        b.slide(f"sash_{k}", "frame", way, (width if flat else height) / 2 - 0.05)
 
 
-@kind(
-    "elevator",
-    words="lift, elevator car, passenger elevator, freight elevator, lift cabin, elevator cabin",
-    width=length(0.9, 1.3),
-)
+@kind(words="lift, elevator car, passenger elevator, freight elevator, lift cabin, elevator cabin", width=(0.9, 1.3))
 def elevator(b: ObjectBuilder, width: float) -> None:
     """Doors that part, a call panel with buttons."""
     h = 2.1
@@ -516,44 +441,32 @@ def elevator(b: ObjectBuilder, width: float) -> None:
         "shaft",
         box((-width - 0.3, 0, 0), (-width / 2, 0.2, h + 0.4)),
         box((width / 2, 0, 0), (width + 0.3, 0.2, h + 0.4)),
-        box((-width - 0.2, 0, h), (width + 0.2, 0.2, h + 0.4)),
-        material="ceramic",
+        slab(width + 0.2, (0, 0.2), (h, h + 0.4)),
+        look="ceramic",
     )
     g = b.gap(0.05) + 0.001
     for k, s in enumerate((-1, 1)):
-        b.part(
-            f"door_{k}", box((s * 0.003, 0.2 + g, 0.01), (s * (width / 2 + 0.05), 0.23 + g, h + 0.05)), material="steel"
-        )
-        b.slide(f"door_{k}", parent="shaft", axis=s * X, upper=width / 2 - 0.05)
+        b.part(f"door_{k}", box((s * 0.003, 0.2 + g, 0.01), (s * (width / 2 + 0.05), 0.23 + g, h + 0.05)), look="steel")
+        b.slide(f"door_{k}", "shaft", s * X, width / 2 - 0.05)
     for k, z in enumerate((1, 1.08)[: b.count(1, 2)]):
-        button(
-            b,
-            f"call_{k}",
-            parent="shaft",
-            at=(width / 2 + 0.15, 0, z),
-            size=(0.04, 0.04),
-            high=0.01,
-            out=-Y,
-            is_round=b.maybe(),
-        )
+        button(b, f"call_{k}", "shaft", (width / 2 + 0.15, 0, z), (0.04, 0.04), 0.01, -Y, is_round=b.maybe())
 
 
 @kind(
-    "vending machine",
     words="snack machine, drinks machine, ticket machine, drink machine, cigarette machine",
-    width=length(0.7, 1.0),
-    depth=length(0.5, 0.8),
-    height=length(1.6, 1.9),
+    width=(0.7, 1.0),
+    depth=(0.5, 0.8),
+    height=(1.6, 1.9),
 )
 def vending_machine(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A door, a flap below, buttons, a coin knob."""
-    case(b, "machine", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), material="steel")
+    case(b, "machine", (-width / 2, 0, 0), (width / 2, depth, height), material="steel")
     leaf(
         b,
         "door",
-        parent="machine",
-        lower=(-width / 2, -0.06, 0.45),
-        upper=(0.25 * width, 0, height),
+        "machine",
+        (-width / 2, -0.06, 0.45),
+        (0.25 * width, 0, height),
         hinge=-X,
         out=-Y,
         reach=1.6,
@@ -562,9 +475,9 @@ def vending_machine(b: ObjectBuilder, width: float, depth: float, height: float)
     leaf(
         b,
         "flap",
-        parent="machine",
-        lower=(-0.35 * width, -0.012, 0.15),
-        upper=(0.15 * width, 0, 0.35),
+        "machine",
+        (-0.35 * width, -0.012, 0.15),
+        (0.15 * width, 0, 0.35),
         hinge=Z,
         out=-Y,
         reach=0.9,
@@ -572,52 +485,40 @@ def vending_machine(b: ObjectBuilder, width: float, depth: float, height: float)
     )
     for i, z in enumerate(spread(b.count(2, 4), 0.8, 1.3)):
         for k, x in enumerate((0.32 * width, 0.38 * width)):
-            button(
-                b,
-                f"button_{i}_{k}",
-                parent="machine",
-                at=(x, 0, z),
-                size=(0.03, 0.03),
-                high=0.008,
-                out=-Y,
-                is_round=b.maybe(),
-            )
-    knob(b, "coin_return", parent="machine", at=(0.4 * width, 0, 0.7), radius=0.02, high=0.02, out=-Y, reach=1.5)
+            button(b, f"button_{i}_{k}", "machine", (x, 0, z), (0.03, 0.03), 0.008, -Y, is_round=b.maybe())
+    knob(b, "coin_return", "machine", (0.4 * width, 0, 0.7), 0.02, -Y, high=0.02, reach=1.5)
 
 
 @kind(
-    "slot machine",
-    words="one armed bandit, fruit machine, gambling machine",
-    size=length(0.3, 0.6),
-    number=whole(2, 4, words="reel, drum"),
+    words="one armed bandit, fruit machine, gambling machine", size=(0.3, 0.6), number=whole(2, 4, words="reel, drum")
 )
 def slot_machine(b: ObjectBuilder, size: float, number: int) -> None:
     """A lever at the side, reels in a window, a tray."""
-    case(b, "machine", lower=(-0.5 * size, 0, 0), upper=(0.5 * size, 0.7 * size, 1.4 * size), material="steel")
+    case(b, "machine", (-0.5 * size, 0, 0), (0.5 * size, 0.7 * size, 1.4 * size), material="steel")
     g = b.gap(0.02 * size) + 0.0003
-    b.cut("machine", box((-0.4 * size, -0.1, 0.75 * size), (0.4 * size, 0.5 * size, 1.15 * size)))
+    b.cut("machine", slab(0.4 * size, (-0.1, 0.5 * size), (0.75 * size, 1.15 * size)))
     for i, x in enumerate(spread(number, -0.38 * size, 0.38 * size)):
         half = 0.36 * size / number
         b.part(
             f"reel_{i}",
             b.cylinder(0.18 * size, (x - half, 0.2 * size, 0.95 * size), (x + half, 0.2 * size, 0.95 * size)),
         )
-        b.spin(f"reel_{i}", parent="machine", axis=X, pivot=(x, 0.2 * size, 0.95 * size))
+        b.spin(f"reel_{i}", "machine", X, (x, 0.2 * size, 0.95 * size))
     at = vector(0.5 * size + g, 0.3 * size, 0.7 * size)
     b.part(
         "lever",
         b.cylinder(0.05 * size, at, at + 0.08 * size * X),
         b.rod(0.02 * size, at + 0.06 * size * X, at + vector(0.06 * size, -0.05 * size, 0.5 * size)),
         ball(0.05 * size, at + vector(0.06 * size, -0.05 * size, 0.52 * size)),
-        material="metal",
+        look="metal",
     )
-    b.hinge("lever", parent="machine", axis=X, pivot=at - g * X, upper=1.2)
+    b.hinge("lever", "machine", X, at - g * X, 1.2)
 
 
-@kind("awning", words="sun blind, shop awning, folding arm awning, patio awning", width=length(1.5, 3.0))
+@kind(words="sun blind, shop awning, folding arm awning, patio awning", width=(1.5, 3.0))
 def awning(b: ObjectBuilder, width: float) -> None:
     """An awning: arms that fold out of a wall case, a crank."""
-    b.part("case", box((-width / 2, -0.1, 0), (width / 2, 0.1, 0.2)), material="metal")
+    b.part("case", slab(width / 2, 0.1, (0, 0.2)), look="metal")
     g = b.gap(0.05) + 0.001
     for k, s in enumerate((-1, 1)):
         x = s * 0.42 * width
@@ -627,66 +528,58 @@ def awning(b: ObjectBuilder, width: float) -> None:
             f"arm_{k}",
             beam(0.05, 0.05, (x, y, 0.03 - 0.025 - g), (x - s * 0.3 * width, y - 0.5, 0.03 - 0.025 - g)),
             b.cylinder(0.03, (x, y, 0.03 - 0.05 - g), (x, y, 0.03 - g)),
-            material="metal",
+            look="metal",
         )
-        b.hinge(f"arm_{k}", parent="case", axis=s * Z * -1, pivot=(x, y, 0), upper=0.6, lower=-0.5, ajar=False)
-    crank(b, "crank", parent="case", at=(width / 2, 0, 0.1), out=X, length=0.2)
+        b.hinge(f"arm_{k}", "case", s * Z * -1, (x, y, 0), 0.6, lower=-0.5, ajar=False)
+    crank(b, "crank", "case", (width / 2, 0, 0.1), X, 0.2)
 
 
-@kind("solar tracker", words="solar panel, tracking solar panel, heliostat, solar array", size=length(0.3, 2.0))
+@kind(words="solar panel, tracking solar panel, heliostat, solar array", size=(0.3, 2.0))
 def solar_tracker(b: ObjectBuilder, size: float) -> None:
     """A panel that tilts on a head that turns on a post."""
-    b.part(
-        "post",
-        b.cylinder(0.06 * size, (0, 0, 0), (0, 0, size)),
-        b.cylinder(0.25 * size, (0, 0, 0), (0, 0, 0.03 * size)),
-        material="steel",
-    )
+    b.part("post", b.cylinder(0.06 * size, 0, size), b.cylinder(0.25 * size, 0, 0.03 * size), look="steel")
     g = b.gap(0.03 * size)
     b.part(
         "head",
-        b.cylinder(0.08 * size, (0, 0, size + g), (0, 0, 1.1 * size)),
+        b.cylinder(0.08 * size, size + g, 1.1 * size),
         [
-            box(
-                (s * 0.12 * size - 0.02 * size, -0.05 * size, 1.07 * size),
-                (s * 0.12 * size + 0.02 * size, 0.05 * size, 1.3 * size),
-            )
+            slab((s * 0.12 * size - 0.02 * size, s * 0.12 * size + 0.02 * size), 0.05 * size, (1.07 * size, 1.3 * size))
             for s in (-1, 1)
         ],
-        box((-0.13 * size, -0.05 * size, 1.05 * size), (0.13 * size, 0.05 * size, 1.1 * size)),
-        material="steel",
+        slab(0.13 * size, 0.05 * size, (1.05 * size, 1.1 * size)),
+        look="steel",
     )
-    b.spin("head", parent="post", axis=Z, pivot=(0, 0, size))
+    b.spin("head", "post", Z, (0, 0, size))
     c = vector(0, 0, 1.26 * size)
     b.part(
         "panel",
         beam(1.2 * size, 0.04 * size, c + vector(0, -0.4 * size, 0.05 * size), c + vector(0, 0.4 * size, 0.12 * size)),
         beam(0.15 * size, 0.16 * size, c - 0.04 * size * Y, c + 0.04 * size * Y),
-        material="glass",
+        look="glass",
     )
     if not b.style.has_bore:
         b.part(f"{b.pick('panel', 'head')}", b.cylinder(0.02 * size, c - 0.15 * size * X, c + 0.15 * size * X))
     if b.style.has_bore:
         b.part("panel", b.cylinder(0.02 * size, c - 0.15 * size * X, c + 0.15 * size * X))
         b.cut("head", b.cylinder(0.02 * size + 1.5 * g, c - 0.15 * size * X, c + 0.15 * size * X))
-    b.hinge("panel", parent="head", axis=X, pivot=c, upper=0.5, lower=-0.6, ajar=False)
+    b.hinge("panel", "head", X, c, 0.5, lower=-0.6, ajar=False)
 
 
-@kind("flower press", words="book press", width=length(0.15, 0.35), z=length(0.02, 0.05))
+@kind(words="book press", width=(0.15, 0.35), z=(0.02, 0.05))
 def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
     """Two boards on screws with wing nuts: the upper board slides, the nuts turn."""
     b.part(
         "lower",
-        box((-width / 2, -width / 2, 0), (width / 2, width / 2, 0.015)),
+        slab(width / 2, width / 2, (0, 0.015)),
         [
             b.cylinder(0.004, (x, y, 0.01), (x, y, 0.12))
             for x in (-0.42 * width, 0.42 * width)
             for y in (-0.42 * width, 0.42 * width)
         ],
-        material="wood",
+        look="wood",
     )
     g = b.gap(0.005) + 0.0003
-    b.part("upper", box((-width / 2, -width / 2, z), (width / 2, width / 2, z + 0.015)), material="wood")
+    b.part("upper", slab(width / 2, width / 2, (z, z + 0.015)), look="wood")
     for k, (x, y) in enumerate([(x, y) for x in (-0.42 * width, 0.42 * width) for y in (-0.42 * width, 0.42 * width)]):
         b.bore("upper", b.cylinder(0.004 + 1.5 * g, (x, y, 0), (x, y, 1)))
         n = f"nut_{k}"
@@ -695,15 +588,14 @@ def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
             n,
             b.cylinder(0.009, (x, y, low), (x, y, low + 0.012)),
             beam(0.004, 0.008, (x - 0.02, y, low + 0.012), (x + 0.02, y, low + 0.012)),
-            material="metal",
+            look="metal",
         )
         b.bore(n, b.cylinder(0.004 + 1.5 * g, (x, y, 0), (x, y, 1)))
-        b.spin(n, parent="lower", axis=Z, pivot=(x, y, low))
-    b.slide("upper", parent="lower", axis=Z, upper=0.018, ajar=False)
+        b.spin(n, "lower", Z, (x, y, low))
+    b.slide("upper", "lower", Z, 0.018, ajar=False)
 
 
 @kind(
-    "piano",
     words="upright piano, pianola, player piano, clavichord, toy piano",
     title="upright piano",
     part_words={"lid": "fallboard, keyboard lid, key cover, cover", "key": "white key, piano key"},
@@ -716,43 +608,40 @@ def piano(b: ObjectBuilder, keys: int) -> None:
     w = 1.3 / keys
     b.part(
         "body",
-        box((-0.75, -0.025, 0), (0.75, 0.325, 1.2)),
-        box((-0.75, -0.32, 0.6), (0.75, 0, 0.7)),
+        slab(0.75, (-0.025, 0.325), (0, 1.2)),
+        slab(0.75, (-0.32, 0), (0.6, 0.7)),
         [box((s * 0.66, -0.31, 0), (s * 0.75, -0.22, 0.61)) for s in (-1, 1)],
         [box((s * 0.69, -0.32, 0.6), (s * 0.75, 0, 0.82)) for s in (-1, 1)],
         b.cylinder(0.008, (-0.72, -0.05, 0.8), (0.72, -0.05, 0.8)),
-        box((-0.2, -0.04, 0), (0.2, 0, 0.1)),
-        material="wood",
-        color="black",
+        slab(0.2, (-0.04, 0), (0, 0.1)),
+        look="black wood",
     )
     b.cut("body", [box((x - 0.026 - g, -0.045, 0.03), (x + 0.026 + g, 0.02, 0.085)) for x in (-0.07, 0.07)])
     for k, x in enumerate(spread(keys, -0.65, 0.65)):
-        b.part(f"key_{k + 1}", box((x - w / 2 + g / 2, -0.3, 0.716), (x + w / 2 - g / 2, -0.03, 0.732)), color="white")
+        b.part(f"key_{k + 1}", box((x - w / 2 + g / 2, -0.3, 0.716), (x + w / 2 - g / 2, -0.03, 0.732)), look="white")
         if k % 7 not in (2, 6) and k + 1 < keys:
             b.cut(f"key_{k + 1}", box((x + 0.22 * w, -0.21, 0.7), (x + w, 0, 0.8)))
         if k and (k - 1) % 7 not in (2, 6):
             b.cut(f"key_{k + 1}", box((x - w, -0.21, 0.7), (x - 0.22 * w, 0, 0.8)))
             b.part(
-                f"black_key_{k}", box((x - 0.78 * w + g, -0.2, 0.718), (x - 0.22 * w - g, -0.03, 0.744)), color="black"
+                f"black_key_{k}", box((x - 0.78 * w + g, -0.2, 0.718), (x - 0.22 * w - g, -0.03, 0.744)), look="black"
             )
-            b.hinge(f"black_key_{k}", parent="body", axis=X, pivot=(x, -0.03, 0.72), upper=0.045, ajar=False)
-        b.hinge(f"key_{k + 1}", parent="body", axis=X, pivot=(x, -0.03, 0.72), upper=0.045, ajar=False)
+            b.hinge(f"black_key_{k}", "body", X, (x, -0.03, 0.72), 0.045, ajar=False)
+        b.hinge(f"key_{k + 1}", "body", X, (x, -0.03, 0.72), 0.045, ajar=False)
     for k, x in enumerate((-0.07, 0.07)):
-        b.part(f"pedal_{k + 1}", box((x - 0.025, -0.15, 0.06), (x + 0.025, 0.015, 0.072)), material="brass")
-        b.hinge(f"pedal_{k + 1}", parent="body", axis=X, pivot=(x, 0.01, 0.066), upper=0.12, ajar=False)
+        b.part(f"pedal_{k + 1}", box((x - 0.025, -0.15, 0.06), (x + 0.025, 0.015, 0.072)), look="brass")
+        b.hinge(f"pedal_{k + 1}", "body", X, (x, 0.01, 0.066), 0.12, ajar=False)
     b.part(
         "lid",
-        box((-0.685, -0.31, 0.79), (0.685, -0.06, 0.81)),
+        slab(0.685, (-0.31, -0.06), (0.79, 0.81)),
         b.cylinder(0.018, (-0.685, -0.05, 0.8), (0.685, -0.05, 0.8)),
-        material="wood",
-        color="black",
+        look="black wood",
     )
     b.cut("lid", b.cylinder(0.0085 + g, (-1, -0.05, 0.8), (1, -0.05, 0.8)))
-    b.hinge("lid", parent="body", axis=-X, pivot=(0, -0.05, 0.8), upper=1.57)
+    b.hinge("lid", "body", -X, (0, -0.05, 0.8), 1.57)
 
 
 @kind(
-    "grand piano",
     words="baby grand piano, concert piano, concert grand, wing piano, harpsichord",
     part_words={"lid": "top, wing, cover", "key": "white key, piano key"},
     details={"leg": 3},
@@ -769,12 +658,11 @@ def grand_piano(b: ObjectBuilder, keys: int) -> None:
         prism(wing, (0, 0, 0.85), 0.2, "z"),
         [box((s * 0.68, -0.8, 0.7), (s * 0.75, -0.45, 0.92)) for s in (-1, 1)],
         [b.cylinder(0.05, (x, y, 0), (x, y, 0.66)) for x, y in ((-0.62, -0.65), (0.62, -0.65), (-0.45, 0.85))],
-        box((-0.03, -0.5, 0.03), (0.03, -0.4, 0.66)),
-        box((-0.1, -0.52, 0.03), (0.1, -0.38, 0.11)),
+        slab(0.03, (-0.5, -0.4), (0.03, 0.66)),
+        slab(0.1, (-0.52, -0.38), (0.03, 0.11)),
         b.cylinder(0.01, (-0.78, -0.4, 0.96), (-0.78, 1, 0.96)),
         [box((-0.795, y - 0.025, 0.9), (-0.735, y + 0.025, 0.965)) for y in (-0.375, 0.975)],
-        material="wood",
-        color="black",
+        look="black wood",
     )
     b.cut(
         "body",
@@ -793,25 +681,21 @@ def grand_piano(b: ObjectBuilder, keys: int) -> None:
             0.3,
             "z",
         ),
-        box((-0.026 - g, -0.53, 0.045), (0.026 + g, -0.42, 0.095)),
+        slab(0.026 + g, (-0.53, -0.42), (0.045, 0.095)),
     )
     for k, x in enumerate(spread(keys, -0.67, 0.67)):
-        b.part(
-            f"key_{k + 1}", box((x - w / 2 + g / 2, -0.78, 0.805), (x + w / 2 - g / 2, -0.503, 0.822)), color="white"
-        )
+        b.part(f"key_{k + 1}", box((x - w / 2 + g / 2, -0.78, 0.805), (x + w / 2 - g / 2, -0.503, 0.822)), look="white")
         if k % 7 not in (2, 6) and k + 1 < keys:
             b.cut(f"key_{k + 1}", box((x + 0.22 * w, -0.69, 0.75), (x + w, 0, 0.9)))
         if k and (k - 1) % 7 not in (2, 6):
             b.cut(f"key_{k + 1}", box((x - w, -0.69, 0.75), (x - 0.22 * w, 0, 0.9)))
             b.part(
-                f"black_key_{k}",
-                box((x - 0.78 * w + g, -0.68, 0.807), (x - 0.22 * w - g, -0.503, 0.834)),
-                color="black",
+                f"black_key_{k}", box((x - 0.78 * w + g, -0.68, 0.807), (x - 0.22 * w - g, -0.503, 0.834)), look="black"
             )
-            b.hinge(f"black_key_{k}", parent="body", axis=X, pivot=(x, -0.503, 0.809), upper=0.045, ajar=False)
-        b.hinge(f"key_{k + 1}", parent="body", axis=X, pivot=(x, -0.503, 0.809), upper=0.045, ajar=False)
-    b.part("pedal", box((-0.025, -0.6, 0.065), (0.025, -0.425, 0.077)), material="brass")
-    b.hinge("pedal", parent="body", axis=X, pivot=(0, -0.43, 0.071), upper=0.1, ajar=False)
+            b.hinge(f"black_key_{k}", "body", X, (x, -0.503, 0.809), 0.045, ajar=False)
+        b.hinge(f"key_{k + 1}", "body", X, (x, -0.503, 0.809), 0.045, ajar=False)
+    b.part("pedal", slab(0.025, (-0.6, -0.425), (0.065, 0.077)), look="brass")
+    b.hinge("pedal", "body", X, (0, -0.43, 0.071), 0.1, ajar=False)
     b.part(
         "lid",
         prism(
@@ -822,8 +706,7 @@ def grand_piano(b: ObjectBuilder, keys: int) -> None:
         ),
         b.cylinder(0.018, (-0.78, -0.3, 0.96), (-0.78, 0.9, 0.96)),
         box((-0.78, -0.3, 0.964), (-0.72, 0.9, 0.979)),
-        material="wood",
-        color="black",
+        look="black wood",
     )
     b.cut("lid", b.cylinder(0.01 + g, (-0.78, -2, 0.96), (-0.78, 2, 0.96)))
-    b.hinge("lid", parent="body", axis=-Y, pivot=(-0.78, 0.3, 0.96), upper=0.7)
+    b.hinge("lid", "body", -Y, (-0.78, 0.3, 0.96), 0.7)

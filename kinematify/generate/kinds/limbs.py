@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
-from kinematify.generate.procedural.solids import X, Z, box, cylinder, hull, off, rod, union, vector
+from kinematify.generate.procedural.solids import X, Z, box, cylinder, hull, off, rod, slab, union, vector
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -34,10 +34,10 @@ _KNUCKLE = 0.06
 def jaw_rail(half: float) -> list[Manifold]:
     """Return a palm with a rail along x on which two jaws run, as far as `half` to either side."""
     return [
-        box((-half - 0.012, -0.03, 0.04), (half + 0.012, 0.03, 0.07)),
-        cylinder(0.025, (0, 0, 0), (0, 0, 0.041)),
-        box((-half - 0.001, -_JAW_BAR, _JAW_LEVEL - _JAW_BAR), (half + 0.001, _JAW_BAR, _JAW_LEVEL + _JAW_BAR)),
-        *[box((s * half, -0.03, 0.069), (s * (half + 0.012), 0.03, _JAW_LEVEL + 2 * _JAW_BAR)) for s in (-1, 1)],
+        slab(half + 0.012, 0.03, (0.04, 0.07)),
+        cylinder(0.025, 0, 0.041),
+        slab(half + 0.001, _JAW_BAR, (_JAW_LEVEL - _JAW_BAR, _JAW_LEVEL + _JAW_BAR)),
+        *[slab((s * half, s * (half + 0.012)), 0.03, (0.069, _JAW_LEVEL + 2 * _JAW_BAR)) for s in (-1, 1)],
     ]
 
 
@@ -49,8 +49,8 @@ def finger_ring(fingers: int) -> float:
 def finger_palm(fingers: int) -> list[Manifold]:
     """Return a round palm with room for fingers around it."""
     return [
-        cylinder(finger_ring(fingers) + _FINGER_HALF, (0, 0, 0.02), (0, 0, _KNUCKLE - 2 * _FINGER_HALF)),
-        cylinder(0.025, (0, 0, 0), (0, 0, 0.021)),
+        cylinder(finger_ring(fingers) + _FINGER_HALF, 0.02, _KNUCKLE - 2 * _FINGER_HALF),
+        cylinder(0.025, 0, 0.021),
     ]
 
 
@@ -59,20 +59,15 @@ def jaws(
 ) -> None:
     """Add two mirrored jaws, `called`_1 and `called`_2, that reach beyond the rail of a palm; zero is shut."""
     inner = _JAW_BAR + clearance
-    slide = box((clearance, -0.02, 0.07 + clearance), (_JAW_LONG, 0.02, _JAW_LEVEL + 3 * _JAW_BAR)) - box(
-        (-1, -inner, _JAW_LEVEL - inner), (1, inner, _JAW_LEVEL + inner)
+    slide = slab((clearance, _JAW_LONG), 0.02, (0.07 + clearance, _JAW_LEVEL + 3 * _JAW_BAR)) - slab(
+        1, inner, (_JAW_LEVEL - inner, _JAW_LEVEL + inner)
     )
-    jaw = slide + box((clearance, -0.008, _JAW_LEVEL + 2.9 * _JAW_BAR), (0.008, 0.008, _JAW_LEVEL + reach))
+    jaw = slide + slab((clearance, 0.008), 0.008, (_JAW_LEVEL + 2.9 * _JAW_BAR, _JAW_LEVEL + reach))
     seen = w.from_frame(frame)
     for number, sign, solid in ((1, 1, jaw), (2, -1, jaw.mirror((1, 0, 0)))):
         seen.body(f"{called}_{number}", solid)
         seen.slides(
-            f"{called}_{number}",
-            parent=palm,
-            axis=(sign, 0, 0),
-            pivot=(0, 0, _JAW_LEVEL),
-            limits=(0.0, half - _JAW_LONG - clearance),
-            rest=rest,
+            f"{called}_{number}", palm, (sign, 0, 0), (0, 0, _JAW_LEVEL), (0.0, half - _JAW_LONG - clearance), rest=rest
         )
 
 
@@ -92,19 +87,12 @@ def fingered(
             half.translate((0, -around, _KNUCKLE)).rotate((0, 0, angle))
             for half in fork(wide, _FINGER_HALF, tight, 2.2 * _FINGER_HALF)
         ]
-        blade = box((-0.5 * wide, -_FINGER_HALF, start), (0.5 * wide, _FINGER_HALF, reach)) + cylinder(
+        blade = slab(0.5 * wide, _FINGER_HALF, (start, reach)) + cylinder(
             _FINGER_HALF, (-0.5 * wide, 0, reach), (0.5 * wide, 0, reach)
         )
         seen.add(palm, forked)
         seen.body(f"{called}_{k + 1}", tongue, blade.translate((0, -around, _KNUCKLE)).rotate((0, 0, angle)))
-        seen.turns(
-            f"{called}_{k + 1}",
-            parent=palm,
-            axis=turn @ X,
-            pivot=turn @ (0, -around, _KNUCKLE),
-            limits=(0.0, 1.2),
-            rest=rest,
-        )
+        seen.turns(f"{called}_{k + 1}", palm, turn @ X, turn @ (0, -around, _KNUCKLE), (0.0, 1.2), rest=rest)
 
 
 # ---- straight limbs that hang down
@@ -176,7 +164,7 @@ def tracked(w: Workshop, clearance: float, called: str, length: float, width: fl
     round_ = 0.46 * high
     run = 0.5 * length - 0.5 * high
     cleat = 0.04 * high
-    cross = box((-half + 0.5 * belt, -0.3 * length, 0.35 * high), (half - 0.5 * belt, 0.3 * length, 0.9 * high))
+    cross = slab(half - 0.5 * belt, 0.3 * length, (0.35 * high, 0.9 * high))
 
     def belt_of(x: float) -> list[Manifold]:
         return [
@@ -208,7 +196,7 @@ def tracked(w: Workshop, clearance: float, called: str, length: float, width: fl
             nuts = [cylinder(0.12 * radius, spot, off(spot, s * 0.3 * radius, 0, 0), segments=6) for spot in spots]
             w.cut(called, hole)
             w.body(f"{side}_wheel_{k + 1}", rotor, nuts, material="steel")
-            w.turns(f"{side}_wheel_{k + 1}", parent=called, axis=(s, 0, 0), pivot=pivot)
+            w.turns(f"{side}_wheel_{k + 1}", called, (s, 0, 0), pivot)
 
 
 def turntable(w: Workshop, clearance: float, called: str, parent: str, length: float, width: float) -> None:
@@ -219,4 +207,4 @@ def turntable(w: Workshop, clearance: float, called: str, parent: str, length: f
     w.add(parent, boss, cylinder(ring_, (0, 0, 0.6 * 0.22 * length), pivot))
     w.cut(parent, hole)
     w.body(called, rotor)
-    w.turns(called, parent=parent, axis=Z, pivot=pivot)
+    w.turns(called, parent, Z, pivot)

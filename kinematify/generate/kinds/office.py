@@ -6,69 +6,58 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, button, knob
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "typewriter",
-    words="mechanical typewriter",
-    number=whole(5, 9, words="key"),
-)
+@kind(words="mechanical typewriter", number=whole(5, 9, words="key"))
 def typewriter(b: ObjectBuilder, number: int) -> None:
     width = 0.34
     b.part(
         "body",
         prism([(-0.17, 0), (0.17, 0), (0.17, 0.1), (0, 0.1), (-0.17, 0.03)], (0, 0, 0), width, "x"),
-        material="metal",
-        color="dark green",
+        look="dark green metal",
     )
     b.part(
         "carriage",
-        box((-0.19, 0.06, 0.102), (0.19, 0.14, 0.112)),
+        slab(0.19, (0.06, 0.14), (0.102, 0.112)),
         b.cylinder(0.022, (-0.16, 0.1, 0.132), (0.16, 0.1, 0.132)),
         [box((s * 0.17 - 0.01, 0.075, 0.11), (s * 0.17 + 0.01, 0.125, 0.15)) for s in (-1, 1)],
-        material="metal",
-        color="black",
+        look="black metal",
     )
-    b.slide("carriage", parent="body", axis=X, upper=0.1, lower=-0.1)
+    b.slide("carriage", "body", X, 0.1, lower=-0.1)
     for k, x in enumerate(spread(number, -0.15, 0.15)):
         b.part(
             f"key_{k}",
             b.cylinder(0.009, (x, -0.11, 0.068), (x, -0.11, 0.076)),
             b.cylinder(0.003, (x, -0.11, 0.03), (x, -0.11, 0.07)),
-            color="black",
+            look="black",
         )
         b.bore("body", b.cylinder(0.0045, (x, -0.11, 0.01), (x, -0.11, 0.2)))
-        b.slide(f"key_{k}", parent="body", axis=-Z, upper=0.006)
+        b.slide(f"key_{k}", "body", -Z, 0.006)
 
 
-@kind(
-    "cash register",
-    words="till, cash drawer",
-    width=length(0.36, 0.46),
-)
+@kind(words="till, cash drawer", width=(0.36, 0.46))
 def cash_register(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "body",
-        box((-w, -0.2, 0), (w, 0.2, 0.12)),
+        slab(w, 0.2, (0, 0.12)),
         prism([(-0.15, 0.12), (0.2, 0.12), (0.2, 0.24), (0.05, 0.24)], (0, 0, 0), 0.8 * width, "x"),
-        color="grey",
+        look="grey",
     )
-    b.bore("body", box((-w + 0.02, -0.21, 0.02), (w - 0.02, 0.15, 0.1)))
+    b.bore("body", slab(w - 0.02, (-0.21, 0.15), (0.02, 0.1)))
     b.part(
         "drawer",
-        box((-w + 0.022, -0.19, 0.022), (w - 0.022, 0.14, 0.09)),
-        box((-w + 0.005, -0.21, 0.015), (w - 0.005, -0.201, 0.105)),
-        box((-w + 0.022, -0.202, 0.022), (w - 0.022, -0.18, 0.09)),
-        material="metal",
-        color="black",
+        slab(w - 0.022, (-0.19, 0.14), (0.022, 0.09)),
+        slab(w - 0.005, (-0.21, -0.201), (0.015, 0.105)),
+        slab(w - 0.022, (-0.202, -0.18), (0.022, 0.09)),
+        look="black metal",
     )
     b.cut(
         "drawer",
@@ -77,21 +66,17 @@ def cash_register(b: ObjectBuilder, width: float) -> None:
             for x in spread(4, -w + 0.025, w - 0.025)
         ],
     )
-    b.slide("drawer", parent="body", axis=-Y, upper=0.25)
+    b.slide("drawer", "body", -Y, 0.25)
     b.part(
         "display",
-        box((-0.09, 0.08, 0.25), (0.09, 0.1, 0.35)),
+        slab(0.09, (0.08, 0.1), (0.25, 0.35)),
         b.cylinder(0.008, (-0.03, 0.1, 0.253), (0.03, 0.1, 0.253)),
-        color="black",
+        look="black",
     )
-    b.hinge("display", parent="body", axis=X, pivot=(0, 0.1, 0.253), upper=0.3, lower=-0.3)
+    b.hinge("display", "body", X, (0, 0.1, 0.253), 0.3, lower=-0.3)
 
 
-@kind(
-    "rotary phone",
-    words="telephone, rotary telephone, dial telephone, landline phone, old phone",
-    size=length(0.9, 1.1),
-)
+@kind(words="telephone, rotary telephone, dial telephone, landline phone, old phone", size=(0.9, 1.1))
 def rotary_phone(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -109,96 +94,76 @@ def rotary_phone(b: ObjectBuilder, size: float) -> None:
             "x",
         ),
         [box(p(s * 0.05 - 0.008, 0.02, 0.09), p(s * 0.05 + 0.008, 0.08, 0.115)) for s in (-1, 1)],
-        color="black",
+        look="black",
     )
     b.cut("body", [b.cylinder(0.0125 * size, p(s * 0.03, 0.05, 0.115), p(s * 0.07, 0.05, 0.115)) for s in (-1, 1)])
     b.part(
         "handset",
         b.cylinder(0.0115 * size, p(-0.13, 0.05, 0.117), p(0.13, 0.05, 0.117)),
         [b.cone(0.026 * size, 0.018 * size, p(s * 0.125, 0.05, 0.092), p(s * 0.125, 0.05, 0.125)) for s in (-1, 1)],
-        color="black",
+        look="black",
     )
-    b.slide("handset", parent="body", axis=Z, upper=0.1)
+    b.slide("handset", "body", Z, 0.1)
     up = vector(0, -0.5, 0.86)
     at = vector(0, -0.045, 0.0625) * size
     b.part(
         "dial",
         b.cylinder(0.035 * size, at + 0.001 * size * up, at + 0.008 * size * up),
         b.cylinder(0.012 * size, at + 0.007 * size * up, at + 0.012 * size * up),
-        material="metal",
+        look="metal",
     )
-    b.hinge("dial", parent="body", axis=up, pivot=at, upper=5.0)
+    b.hinge("dial", "body", up, at, 5.0)
 
 
 @kind(
-    "boombox",
     words="cassette recorder, cassette player, tape recorder, cd player, radio, transistor radio, portable radio",
-    width=length(0.4, 0.6),
+    width=(0.4, 0.6),
 )
 def boombox(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     h = 0.22
     b.part(
         "case",
-        box((-w, -0.06, 0), (w, 0.06, h)),
+        slab(w, 0.06, (0, h)),
         [b.cylinder(0.08, (s * 0.66 * w, -0.066, 0.11), (s * 0.66 * w, -0.059, 0.11)) for s in (-1, 1)],
-        color="grey",
+        look="grey",
     )
-    b.cut("case", box((-0.055, -0.1, 0.025), (0.055, -0.03, 0.105)))
-    b.part("door", box((-0.053, -0.066, 0.027), (0.053, -0.06, 0.103)), material="glass")
-    b.hinge("door", parent="case", axis=X, pivot=(0, -0.066, 0.027), upper=0.7)
+    b.cut("case", slab(0.055, (-0.1, -0.03), (0.025, 0.105)))
+    b.part("door", slab(0.053, (-0.066, -0.06), (0.027, 0.103)), look="glass")
+    b.hinge("door", "case", X, (0, -0.066, 0.027), 0.7)
     for k, x in enumerate(spread(5, -0.09, 0.09)):
-        button(b, f"key_{k}", parent="case", at=(x, -0.02, h), size=(0.02, 0.03), high=0.008, out=Z)
+        button(b, f"key_{k}", "case", (x, -0.02, h), (0.02, 0.03), 0.008, Z)
     for k, s in enumerate((-1, 1)):
-        knob(b, f"knob_{k}", parent="case", at=(s * 0.05, -0.06, 0.17), radius=0.016, high=0.014, out=-Y, reach=4.7)
-    bail(
-        b,
-        "handle",
-        parent="case",
-        start=(-w, 0.03, h - 0.03),
-        end=(w, 0.03, h - 0.03),
-        high=0.09,
-        thick=0.016,
-        up=Z,
-        lower=-0.9,
-        upper=0.9,
-    )
+        knob(b, f"knob_{k}", "case", (s * 0.05, -0.06, 0.17), 0.016, -Y, high=0.014, reach=4.7)
+    bail(b, "handle", "case", (-w, 0.03, h - 0.03), (w, 0.03, h - 0.03), 0.09, 0.016, Z, lower=-0.9, upper=0.9)
 
 
-@kind("dvd player", walls=5, words="blu ray player, disc player", width=length(0.3, 0.43))
+@kind(walls=5, words="blu ray player, disc player", width=(0.3, 0.43))
 def dvd_player(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "case",
-        box((-w, -0.14, 0.006), (w, 0.14, 0.055)),
+        slab(w, 0.14, (0.006, 0.055)),
         [b.cylinder(0.012, (x, y, 0), (x, y, 0.007)) for x in (-0.8 * w, 0.8 * w) for y in (-0.11, 0.11)],
-        material="metal",
-        color="black",
+        look="black metal",
     )
-    b.cut("case", box((-0.072, -0.2, 0.022), (0.072, 0.06, 0.042)), box((0.1, -0.13, 0.012), (w - 0.01, 0.13, 0.05)))
+    b.cut("case", slab(0.072, (-0.2, 0.06), (0.022, 0.042)), slab((0.1, w - 0.01), 0.13, (0.012, 0.05)))
     b.part(
-        "tray",
-        box((-0.07, -0.143, 0.024), (0.07, 0.05, 0.034)),
-        box((-0.071, -0.146, 0.023), (0.071, -0.141, 0.041)),
-        color="black",
+        "tray", slab(0.07, (-0.143, 0.05), (0.024, 0.034)), slab(0.071, (-0.146, -0.141), (0.023, 0.041)), look="black"
     )
     b.cut("tray", b.cylinder(0.061, (0, -0.065, 0.028), (0, -0.065, 0.1)))
-    b.slide("tray", parent="case", axis=-Y, upper=0.13)
-    button(b, "power", parent="case", at=(-0.85 * w, -0.14, 0.03), size=(0.016, 0.01), high=0.004, out=-Y)
+    b.slide("tray", "case", -Y, 0.13)
+    button(b, "power", "case", (-0.85 * w, -0.14, 0.03), (0.016, 0.01), 0.004, -Y)
 
 
-@kind(
-    "game controller",
-    words="gamepad, game pad, controller",
-    size=length(0.9, 1.1),
-)
+@kind(words="gamepad, game pad, controller", size=(0.9, 1.1))
 def game_controller(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "body",
         box(p(-0.05, -0.03, 0), p(0.05, 0.03, 0.03)),
         [b.rod(0.022 * size, p(s * 0.055, 0.02, 0.003), p(s * 0.065, -0.06, -0.005)) for s in (-1, 1)],
-        color="black",
+        look="black",
     )
     for k, x in enumerate((-0.025, 0.025)):
         b.bore("body", b.cone(0.008 * size, 0.013 * size, p(x, -0.012, 0.018), p(x, -0.012, 0.0301)))
@@ -206,56 +171,38 @@ def game_controller(b: ObjectBuilder, size: float) -> None:
             f"stick_{k}",
             b.cylinder(0.004 * size, p(x, -0.012, 0.019), p(x, -0.012, 0.036)),
             b.cylinder(0.009 * size, p(x, -0.012, 0.035), p(x, -0.012, 0.041)),
-            material="rubber",
-            color="grey",
+            look="grey rubber",
         )
-        b.hinge(f"stick_{k}", parent="body", axis=X, pivot=p(x, -0.012, 0.021), upper=0.3, lower=-0.3)
+        b.hinge(f"stick_{k}", "body", X, p(x, -0.012, 0.021), 0.3, lower=-0.3)
     for k, (x, y) in enumerate(((0.03, 0.012), (0.042, 0.02), (0.03, 0.026), (0.018, 0.018))):
-        button(
-            b,
-            f"button_{k}",
-            parent="body",
-            at=p(x, y, 0.03),
-            size=(0.008 * size, 0.008 * size),
-            high=0.004 * size,
-            out=Z,
-            is_round=True,
-        )
+        button(b, f"button_{k}", "body", p(x, y, 0.03), (0.008 * size, 0.008 * size), 0.004 * size, Z, is_round=True)
 
 
-@kind(
-    "joystick",
-    words="flight stick, control stick, arcade stick, fight stick",
-    height=length(0.14, 0.22),
-)
+@kind(words="flight stick, control stick, arcade stick, fight stick", height=(0.14, 0.22))
 def joystick(b: ObjectBuilder, height: float) -> None:
-    b.part("base", box((-0.08, -0.08, 0), (0.08, 0.08, 0.045)), color="black")
-    b.cut("base", box((-0.05, -0.05, 0.01), (0.05, 0.05, 1)))
+    b.part("base", slab(0.08, 0.08, (0, 0.045)), look="black")
+    b.cut("base", slab(0.05, 0.05, (0.01, 1)))
     b.bore("base", b.cylinder(0.0062, (-0.07, 0, 0.03), (0.07, 0, 0.03)))
     b.part(
         "frame",
-        [box((-0.03, s * 0.03, 0.022), (0.03, s * 0.036, 0.038)) for s in (-1, 1)],
-        [box((s * 0.03, -0.036, 0.022), (s * 0.036, 0.036, 0.038)) for s in (-1, 1)],
+        [slab(0.03, (s * 0.03, s * 0.036), (0.022, 0.038)) for s in (-1, 1)],
+        [slab((s * 0.03, s * 0.036), 0.036, (0.022, 0.038)) for s in (-1, 1)],
         [b.cylinder(0.005, (s * 0.034, 0, 0.03), (s * 0.068, 0, 0.03)) for s in (-1, 1)],
-        material="metal",
+        look="metal",
     )
     b.bore("frame", b.cylinder(0.0062, (0, -0.05, 0.03), (0, 0.05, 0.03)))
-    b.hinge("frame", parent="base", axis=X, pivot=(0, 0, 0.03), upper=0.3, lower=-0.3)
+    b.hinge("frame", "base", X, (0, 0, 0.03), 0.3, lower=-0.3)
     b.part(
         "stick",
         b.cylinder(0.005, (0, -0.04, 0.03), (0, 0.04, 0.03)),
-        b.cylinder(0.008, (0, 0, 0.028), (0, 0, 0.1)),
-        b.rod(0.018, (0, 0, 0.1), (0, 0, height)),
-        color="grey",
+        b.cylinder(0.008, 0.028, 0.1),
+        b.rod(0.018, 0.1, height),
+        look="grey",
     )
-    b.hinge("stick", parent="frame", axis=Y, pivot=(0, 0, 0.03), upper=0.3, lower=-0.3)
+    b.hinge("stick", "frame", Y, (0, 0, 0.03), 0.3, lower=-0.3)
 
 
-@kind(
-    "computer mouse",
-    words="mouse, gaming mouse",
-    size=length(0.9, 1.1),
-)
+@kind(words="mouse, gaming mouse", size=(0.9, 1.1))
 def computer_mouse(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -263,18 +210,17 @@ def computer_mouse(b: ObjectBuilder, size: float) -> None:
         box(p(-0.03, -0.015, 0), p(0.03, 0.06, 0.03)),
         box(p(-0.03, -0.06, 0), p(0.03, -0.01, 0.02)),
         b.cylinder(0.03 * size, p(0, 0.055, 0), p(0, 0.055, 0.03)),
-        color="black",
+        look="black",
     )
     b.bore("body", box(p(-0.006, -0.052, 0.004), p(0.006, -0.024, 0.1)))
     for k, (a, b_) in enumerate(((-0.029, -0.0065), (0.0065, 0.029))):
-        b.part(f"button_{k}", box(p(a, -0.06, 0.023), p(b_, -0.017, 0.028)), color="grey")
-        b.hinge(f"button_{k}", parent="body", axis=X, pivot=p(0, -0.017, 0.028), upper=0.05)
-    b.part("wheel", b.cylinder(0.012 * size, p(-0.0035, -0.038, 0.019), p(0.0035, -0.038, 0.019)), material="rubber")
-    b.spin("wheel", parent="body", axis=X, pivot=p(0, -0.038, 0.019))
+        b.part(f"button_{k}", box(p(a, -0.06, 0.023), p(b_, -0.017, 0.028)), look="grey")
+        b.hinge(f"button_{k}", "body", X, p(0, -0.017, 0.028), 0.05)
+    b.part("wheel", b.cylinder(0.012 * size, p(-0.0035, -0.038, 0.019), p(0.0035, -0.038, 0.019)), look="rubber")
+    b.spin("wheel", "body", X, p(0, -0.038, 0.019))
 
 
 @kind(
-    "computer keyboard",
     words="pc keyboard, keyboard",
     columns=whole(6, 20, default=14, usual=(6, 10)),
     rows=whole(2, 6, default=5, usual=(2, 4)),
@@ -282,7 +228,7 @@ def computer_mouse(b: ObjectBuilder, size: float) -> None:
 def computer_keyboard(b: ObjectBuilder, columns: int, rows: int) -> None:
     width = 0.019 * columns + 0.02
     depth = 0.019 * rows + 0.02
-    b.part("board", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.012)), color="black")
+    b.part("board", slab(width / 2, depth / 2, (0, 0.012)), look="black")
     for i in range(rows):
         for k in range(columns):
             x = -width / 2 + 0.0195 + 0.019 * k
@@ -292,147 +238,112 @@ def computer_keyboard(b: ObjectBuilder, columns: int, rows: int) -> None:
                 f"key_{i}_{k}",
                 box((x - 0.0085, y - 0.0085, 0.0155), (x + 0.0085, y + 0.0085, 0.021)),
                 box((x - 0.003, y - 0.003, 0.008), (x + 0.003, y + 0.003, 0.016)),
-                color="grey",
+                look="grey",
             )
-            b.slide(f"key_{i}_{k}", parent="board", axis=-Z, upper=0.003)
+            b.slide(f"key_{i}_{k}", "board", -Z, 0.003)
 
 
 @kind(
-    "server rack",
     words="rack cabinet, network cabinet, server cabinet",
     number=whole(3, 6, words="server, drawer, unit"),
-    height=length(1.2, 2.0),
+    height=(1.2, 2.0),
 )
 def server_rack(b: ObjectBuilder, number: int, height: float) -> None:
     b.part(
         "rack",
         [box((x - 0.02, y - 0.02, 0), (x + 0.02, y + 0.02, height)) for x in (-0.28, 0.28) for y in (-0.38, 0.38)],
-        box((-0.3, -0.4, 0), (0.3, 0.4, 0.05)),
-        box((-0.3, -0.4, height - 0.03), (0.3, 0.4, height)),
-        [box((s * 0.3, -0.36, 0.05), (s * 0.295, 0.36, height)) for s in (-1, 1)],
-        material="steel",
-        color="black",
+        slab(0.3, 0.4, (0, 0.05)),
+        slab(0.3, 0.4, (height - 0.03, height)),
+        [slab((s * 0.3, s * 0.295), 0.36, (0.05, height)) for s in (-1, 1)],
+        look="black steel",
     )
     for k, z in enumerate(spread(number, 0.1, height - 0.1)):
-        b.part("rack", [box((s * 0.24, -0.39, z - 0.06), (s * 0.27, 0.39, z - 0.052)) for s in (-1, 1)])
+        b.part("rack", [slab((s * 0.24, s * 0.27), 0.39, (z - 0.06, z - 0.052)) for s in (-1, 1)])
         b.part(
             f"server_{k}",
-            box((-0.23, -0.36, z - 0.05), (0.23, 0.33, z + 0.05)),
+            slab(0.23, (-0.36, 0.33), (z - 0.05, z + 0.05)),
             [box((s * 0.2 - 0.005, -0.38, z - 0.03), (s * 0.2 + 0.005, -0.359, z + 0.03)) for s in (-1, 1)],
-            material="metal",
-            color="grey",
+            look="grey metal",
         )
-        b.cut(f"server_{k}", box((-0.225, -0.35, z - 0.045), (0.225, 0.32, z + 0.045)))
-        b.slide(f"server_{k}", parent="rack", axis=-Y, upper=0.02)
-    leaf(
-        b,
-        "door",
-        parent="rack",
-        lower=(-0.3, -0.425, 0.02),
-        upper=(0.3, -0.405, height),
-        hinge=X,
-        out=-Y,
-        reach=2.0,
-        material="glass",
-    )
+        b.cut(f"server_{k}", slab(0.225, (-0.35, 0.32), (z - 0.045, z + 0.045)))
+        b.slide(f"server_{k}", "rack", -Y, 0.02)
+    leaf(b, "door", "rack", (-0.3, -0.425, 0.02), (0.3, -0.405, height), hinge=X, out=-Y, reach=2.0, material="glass")
 
 
-@kind(
-    "projector screen",
-    words="projection screen, roll up screen",
-    width=length(1.2, 2.2),
-)
+@kind(words="projection screen, roll up screen", width=(1.2, 2.2))
 def projector_screen(b: ObjectBuilder, width: float) -> None:
-    b.part("case", box((-width / 2, -0.05, 0), (width / 2, 0.05, 0.1)), material="metal", color="white")
-    b.cut("case", box((-width / 2 + 0.03, -0.03, -0.1), (width / 2 - 0.03, 0.03, 0.09)))
+    b.part("case", slab(width / 2, 0.05, (0, 0.1)), look="white metal")
+    b.cut("case", slab(width / 2 - 0.03, 0.03, (-0.1, 0.09)))
     b.part(
         "screen",
-        box((-width / 2 + 0.035, -0.004, -0.02), (width / 2 - 0.035, 0.004, 0.08)),
-        box((-width / 2 + 0.02, -0.012, -0.045), (width / 2 - 0.02, 0.012, -0.015)),
-        color="white",
+        slab(width / 2 - 0.035, 0.004, (-0.02, 0.08)),
+        slab(width / 2 - 0.02, 0.012, (-0.045, -0.015)),
+        look="white",
     )
-    b.slide("screen", parent="case", axis=-Z, upper=0.06)
+    b.slide("screen", "case", -Z, 0.06)
 
 
-@kind(
-    "microphone stand",
-    words="mic stand, boom stand, microphone",
-    height=length(0.9, 1.2),
-)
+@kind(words="mic stand, boom stand, microphone", height=(0.9, 1.2))
 def microphone_stand(b: ObjectBuilder, height: float) -> None:
     b.part(
         "base",
         [beam(0.02, 0.015, (0, 0, 0.12), (0.32 * cos(a), 0.32 * sin(a), 0.008)) for a in (0.3, 2.4, 4.5)],
-        b.tube(0.014, 0.01, (0, 0, 0.08), (0, 0, 0.75 * height)),
-        material="steel",
-        color="black",
+        b.tube(0.014, 0.01, 0.08, 0.75 * height),
+        look="black steel",
     )
-    b.cut("base", b.cylinder(0.01, (0, 0, 0.085), (0, 0, 2)))
+    b.cut("base", b.cylinder(0.01, 0.085, 2))
     b.part(
         "post",
-        b.cylinder(0.0085, (0, 0, 0.3 * height), (0, 0, height)),
-        [box((-0.012, s * 0.012, height - 0.01), (0.012, s * 0.018, height + 0.03)) for s in (-1, 1)],
-        box((-0.012, -0.018, height - 0.012), (0.012, 0.018, height - 0.004)),
-        material="steel",
-        color="black",
+        b.cylinder(0.0085, 0.3 * height, height),
+        [slab(0.012, (s * 0.012, s * 0.018), (height - 0.01, height + 0.03)) for s in (-1, 1)],
+        slab(0.012, 0.018, (height - 0.012, height - 0.004)),
+        look="black steel",
     )
-    b.slide("post", parent="base", axis=Z, upper=0.35 * height)
+    b.slide("post", "base", Z, 0.35 * height)
     b.part(
         "boom",
         b.cylinder(0.008, (-0.2, 0, height + 0.018), (0.45, 0, height + 0.018)),
         b.cylinder(0.018, (-0.3, 0, height + 0.018), (-0.2, 0, height + 0.018)),
         b.rod(0.02, (0.47, 0, height + 0.018), (0.56, 0, height + 0.018)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.hinge("boom", parent="post", axis=Y, pivot=(0, 0, height + 0.018), upper=0.7, lower=-0.5)
+    b.hinge("boom", "post", Y, (0, 0, height + 0.018), 0.7, lower=-0.5)
 
 
-@kind(
-    "flip chart",
-    words="flipchart",
-    width=length(0.6, 0.75),
-    height=length(1.6, 1.9),
-)
+@kind(words="flipchart", width=(0.6, 0.75), height=(1.6, 1.9))
 def flip_chart(b: ObjectBuilder, width: float, height: float) -> None:
     number = 1
     b.part(
         "stand",
         [beam(0.03, 0.02, (s * 0.3 * width, 0.03, height - 0.1), (s * 0.55 * width, 0.03, 0), Y) for s in (-1, 1)],
         beam(0.03, 0.02, (0, 0.06, height - 0.1), (0, 0.5, 0), Y),
-        box((-width / 2, 0, 0.45 * height), (width / 2, 0.015, height)),
-        box((-0.02, 0.01, height - 0.15), (0.02, 0.07, height - 0.05)),
-        material="metal",
-        color="white",
+        slab(width / 2, (0, 0.015), (0.45 * height, height)),
+        slab(0.02, (0.01, 0.07), (height - 0.15, height - 0.05)),
+        look="white metal",
     )
     for k in range(number):
         b.part(
             f"sheet_{k}",
-            box((-0.46 * width, -0.003 - 0.004 * k, 0.5 * height), (0.46 * width, -0.001 - 0.004 * k, height)),
-            material="cardboard",
-            color="white",
+            slab(0.46 * width, (-0.003 - 0.004 * k, -0.001 - 0.004 * k), (0.5 * height, height)),
+            look="white cardboard",
         )
-        b.hinge(f"sheet_{k}", parent="stand", axis=-X, pivot=(0, -0.003 - 0.004 * k, height), upper=2.2)
+        b.hinge(f"sheet_{k}", "stand", -X, (0, -0.003 - 0.004 * k, height), 2.2)
 
 
-@kind(
-    "desk calendar",
-    words="date block, perpetual calendar",
-    size=length(0.9, 1.2),
-)
+@kind(words="date block, perpetual calendar", size=(0.9, 1.2))
 def desk_calendar(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "frame",
         box(p(-0.1, -0.05, 0), p(0.1, 0.05, 0.015)),
         [box(p(x - 0.004, -0.04, 0.01), p(x + 0.004, 0.04, 0.1)) for x in (-0.09, 0.09)],
-        material="wood",
+        look="wood",
     )
     b.bore("frame", b.cylinder(0.006 * size, p(-0.12, 0, 0.06), p(0.12, 0, 0.06)))
     for k, (a, b_) in enumerate(((-0.083, -0.032), (-0.028, 0.028), (0.032, 0.083))):
-        b.part(f"drum_{k}", b.cylinder(0.035 * size, p(a, 0, 0.06), p(b_, 0, 0.06)), color="white")
+        b.part(f"drum_{k}", b.cylinder(0.035 * size, p(a, 0, 0.06), p(b_, 0, 0.06)), look="white")
         b.cut(f"drum_{k}", b.cylinder(0.006 * size, p(-0.12, 0, 0.06), p(0.12, 0, 0.06)))
-        b.spin(f"drum_{k}", parent="frame", axis=X, pivot=p(0, 0, 0.06))
+        b.spin(f"drum_{k}", "frame", X, p(0, 0, 0.06))
     b.part(
         "frame",
         b.cylinder(0.0045 * size, p(-0.094, 0, 0.06), p(0.094, 0, 0.06)),
@@ -440,76 +351,60 @@ def desk_calendar(b: ObjectBuilder, size: float) -> None:
     )
 
 
-@kind(
-    "rubber stamp",
-    words="self inking stamp, stamp, date stamp",
-    width=length(0.04, 0.07),
-)
+@kind(words="self inking stamp, stamp, date stamp", width=(0.04, 0.07))
 def rubber_stamp(b: ObjectBuilder, width: float) -> None:
-    b.part("base", box((-width / 2, -0.02, 0), (width / 2, 0.02, 0.05)), color="black")
+    b.part("base", slab(width / 2, 0.02, (0, 0.05)), look="black")
     b.cut(
         "base",
-        box((-width / 2 + 0.004, -0.016, -1), (width / 2 - 0.004, 0.016, 0.04)),
-        box((-width / 2 + 0.008, -0.012, 0), (width / 2 - 0.008, 0.012, 1)),
+        slab(width / 2 - 0.004, 0.016, (-1, 0.04)),
+        slab(width / 2 - 0.008, 0.012, (0, 1)),
     )
     b.part(
         "handle",
-        box((-width / 2 + 0.009, -0.011, 0.02), (width / 2 - 0.009, 0.011, 0.085)),
-        box((-width / 2, -0.02, 0.08), (width / 2, 0.02, 0.095)),
-        box((-width / 2 + 0.006, -0.014, 0.012), (width / 2 - 0.006, 0.014, 0.021)),
-        color="red",
+        slab(width / 2 - 0.009, 0.011, (0.02, 0.085)),
+        slab(width / 2, 0.02, (0.08, 0.095)),
+        slab(width / 2 - 0.006, 0.014, (0.012, 0.021)),
+        look="red",
     )
-    b.slide("handle", parent="base", axis=-Z, upper=0.012)
+    b.slide("handle", "base", -Z, 0.012)
 
 
-@kind(
-    "clapperboard",
-    words="film clapper, film slate, clapper board",
-    width=length(0.25, 0.35),
-)
+@kind("clapperboard", words="film clapper, film slate, clapper board", width=(0.25, 0.35))
 def film_clapper(b: ObjectBuilder, width: float) -> None:
-    b.part("board", box((0, 0, 0), (width, 0.008, 0.6 * width)), material="wood", color="black")
-    b.part(
-        "clapper", box((0, 0, 0.6 * width + 0.001), (width, 0.01, 0.6 * width + 0.03)), material="wood", color="white"
-    )
-    b.hinge("clapper", parent="board", axis=-Y, pivot=(0, 0, 0.6 * width + 0.001), upper=0.8)
+    b.part("board", box((0, 0, 0), (width, 0.008, 0.6 * width)), look="black wood")
+    b.part("clapper", box((0, 0, 0.6 * width + 0.001), (width, 0.01, 0.6 * width + 0.03)), look="white wood")
+    b.hinge("clapper", "board", -Y, (0, 0, 0.6 * width + 0.001), 0.8)
 
 
-@kind(
-    "flashlight",
-    words="torch, pocket torch, pocket lamp, penlight",
-    length=length(0.12, 0.22),
-)
+@kind(words="torch, pocket torch, pocket lamp, penlight", length=(0.12, 0.22))
 def flashlight(b: ObjectBuilder, length: float) -> None:
     b.part(
         "body",
         b.cylinder(0.015, (0, 0, 0), (0, length, 0)),
         b.cylinder(0.012, (0, -0.012, 0), (0, 0.01, 0)),
-        material="metal",
-        color="black",
+        look="black metal",
     )
     b.cut(
         "body",
-        box((-0.005, 0.4 * length, 0.0115), (0.005, 0.4 * length + 0.03, 1)),
+        slab(0.005, (0.4 * length, 0.4 * length + 0.03), (0.0115, 1)),
         b.cylinder(0.0115, (0, 0.01, 0), (0, length - 0.01, 0)) if b.style.hollow else ball(0.001, (0, length / 2, 0)),
     )
-    b.part("head", b.cone(0.018, 0.025, (0, -0.001, 0), (0, -0.05, 0)), material="metal", color="grey")
+    b.part("head", b.cone(0.018, 0.025, (0, -0.001, 0), (0, -0.05, 0)), look="grey metal")
     b.cut("head", b.cylinder(0.0135, (0, 0.1, 0), (0, -0.02, 0)), b.cylinder(0.02, (0, -0.035, 0), (0, -0.1, 0)))
-    b.spin("head", parent="body", axis=-Y, pivot=(0, 0, 0))
-    b.part("switch", box((-0.004, 0.4 * length + 0.001, 0.0123), (0.004, 0.4 * length + 0.016, 0.019)), color="red")
-    b.slide("switch", parent="body", axis=Y, upper=0.012)
+    b.spin("head", "body", -Y, (0, 0, 0))
+    b.part("switch", slab(0.004, (0.4 * length + 0.001, 0.4 * length + 0.016), (0.0123, 0.019)), look="red")
+    b.slide("switch", "body", Y, 0.012)
 
 
 @kind(
-    "lantern",
     words="oil lamp, kerosene lamp, storm lantern, camping lantern, hurricane lamp",
-    radius=length(0.05, 0.08),
-    height=length(0.2, 0.3),
+    radius=(0.05, 0.08),
+    height=(0.2, 0.3),
 )
 def lantern(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part(
         "base",
-        b.cylinder(radius, (0, 0, 0), (0, 0, 0.25 * height)),
+        b.cylinder(radius, 0, 0.25 * height),
         [
             b.cylinder(
                 0.004,
@@ -518,63 +413,51 @@ def lantern(b: ObjectBuilder, radius: float, height: float) -> None:
             )
             for a in (0.8, 2.36, 3.93, 5.5)
         ],
-        b.cylinder(0.7 * radius, (0, 0, 0.25 * height), (0, 0, 0.88 * height)),
-        b.cylinder(radius, (0, 0, 0.88 * height), (0, 0, 0.92 * height)),
-        material="metal",
-        color="dark green",
+        b.cylinder(0.7 * radius, 0.25 * height, 0.88 * height),
+        b.cylinder(radius, 0.88 * height, 0.92 * height),
+        look="dark green metal",
     )
-    b.cut("base", b.cylinder(0.66 * radius, (0, 0, 0.27 * height), (0, 0, 0.86 * height)))
-    b.part(
-        "cap",
-        b.cone(0.8 * radius, 0.3 * radius, (0, 0, 0.92 * height + 0.001), (0, 0, height + 0.03)),
-        material="metal",
-        color="dark green",
-    )
-    b.slide("cap", parent="base", axis=Z, upper=0.04)
-    knob(b, "wick_knob", parent="base", at=(radius, 0, 0.15 * height), radius=0.01, high=0.015, out=X)
+    b.cut("base", b.cylinder(0.66 * radius, 0.27 * height, 0.86 * height))
+    b.part("cap", b.cone(0.8 * radius, 0.3 * radius, 0.92 * height + 0.001, height + 0.03), look="dark green metal")
+    b.slide("cap", "base", Z, 0.04)
+    knob(b, "wick_knob", "base", (radius, 0, 0.15 * height), 0.01, X, high=0.015)
     bail(
         b,
         "handle",
-        parent="base",
-        start=(0, -radius, 0.9 * height),
-        end=(0, radius, 0.9 * height),
-        high=0.5 * height,
-        thick=0.006,
-        up=Z,
+        "base",
+        (0, -radius, 0.9 * height),
+        (0, radius, 0.9 * height),
+        0.5 * height,
+        0.006,
+        Z,
         lower=-1.2,
         upper=1.2,
     )
 
 
-@kind(
-    "floor lamp",
-    words="standard lamp, standing lamp, reading floor lamp",
-    height=length(1.3, 1.7),
-)
+@kind(words="standard lamp, standing lamp, reading floor lamp", height=(1.3, 1.7))
 def floor_lamp(b: ObjectBuilder, height: float) -> None:
     b.part(
         "base",
-        b.cylinder(0.14, (0, 0, 0), (0, 0, 0.025)),
-        b.cylinder(0.011, (0, 0, 0.02), (0, 0, height - 0.03)),
-        [box((-0.012, s * 0.008, height - 0.03), (0.012, s * 0.013, height + 0.015)) for s in (-1, 1)],
-        box((-0.012, -0.013, height - 0.035), (0.012, 0.013, height - 0.012)),
-        material="steel",
-        color="black",
+        b.cylinder(0.14, 0, 0.025),
+        b.cylinder(0.011, 0.02, height - 0.03),
+        [slab(0.012, (s * 0.008, s * 0.013), (height - 0.03, height + 0.015)) for s in (-1, 1)],
+        slab(0.012, 0.013, (height - 0.035, height - 0.012)),
+        look="black steel",
     )
-    b.part("arm", beam(0.012, 0.012, (-0.008, 0, height), (0.4, 0, height + 0.12), Y), material="steel", color="black")
-    b.hinge("arm", parent="base", axis=-Y, pivot=(0, 0, height), upper=0.6, lower=-0.25)
+    b.part("arm", beam(0.012, 0.012, (-0.008, 0, height), (0.4, 0, height + 0.12), Y), look="black steel")
+    b.hinge("arm", "base", -Y, (0, 0, height), 0.6, lower=-0.25)
     b.part(
         "head",
         b.cone(0.09, 0.03, (0.4, 0, height - 0.05), (0.4, 0, height + 0.06)),
         [box((0.39, s * 0.0085, height + 0.05), (0.41, s * 0.014, height + 0.13)) for s in (-1, 1)],
-        material="metal",
-        color="white",
+        look="white metal",
     )
     b.cut("head", b.cone(0.085, 0.026, (0.4, 0, height - 0.055), (0.4, 0, height + 0.05)))
-    b.hinge("head", parent="arm", axis=Y, pivot=(0.4, 0, height + 0.12), upper=0.5, lower=-0.5)
+    b.hinge("head", "arm", Y, (0.4, 0, height + 0.12), 0.5, lower=-0.5)
 
 
-@kind("clip lamp", words="clamp lamp, clip on lamp", size=length(0.9, 1.2))
+@kind(words="clamp lamp, clip on lamp", size=(0.9, 1.2))
 def clip_lamp(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -584,151 +467,120 @@ def clip_lamp(b: ObjectBuilder, size: float) -> None:
         [box(p(s * 0.008, -0.008, 0.12), p(s * 0.013, 0.008, 0.16)) for s in (-1, 1)],
         box(p(-0.013, -0.008, 0.118), p(0.013, 0.008, 0.13)),
         [box(p(s * 0.008, -0.01, -0.025), p(s * 0.014, 0.01, 0.002)) for s in (-1, 1)],
-        color="black",
+        look="black",
     )
-    b.part("clip", box(p(-0.007, -0.08, -0.022), p(0.007, 0.04, -0.012)), color="black")
-    b.hinge("clip", parent="body", axis=X, pivot=p(0, 0, -0.017), upper=0.25)
+    b.part("clip", box(p(-0.007, -0.08, -0.022), p(0.007, 0.04, -0.012)), look="black")
+    b.hinge("clip", "body", X, p(0, 0, -0.017), 0.25)
     b.part(
         "head",
         b.cone(0.045 * size, 0.02 * size, p(0, -0.09, 0.15), p(0, -0.03, 0.15)),
         beam(0.012 * size, 0.012 * size, p(0, -0.035, 0.15), p(0, 0.004, 0.15)),
-        material="metal",
-        color="black",
+        look="black metal",
     )
     b.cut("head", b.cone(0.042 * size, 0.017 * size, p(0, -0.095, 0.15), p(0, -0.04, 0.15)))
-    b.hinge("head", parent="body", axis=X, pivot=p(0, 0, 0.15), upper=0.6, lower=-0.6)
+    b.hinge("head", "body", X, p(0, 0, 0.15), 0.6, lower=-0.6)
 
 
-@kind(
-    "chess clock",
-    words="game clock, chess timer",
-    width=length(0.16, 0.22),
-)
+@kind(words="game clock, chess timer", width=(0.16, 0.22))
 def chess_clock(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "case",
-        box((-w, -0.025, 0), (w, 0.025, 0.1)),
+        slab(w, 0.025, (0, 0.1)),
         [b.cylinder(0.036, (s * w / 2, -0.029, 0.052), (s * w / 2, -0.024, 0.052)) for s in (-1, 1)],
-        [box((-0.012, s * 0.015, 0.098), (0.012, s * 0.02, 0.122)) for s in (-1, 1)],
-        material="wood",
+        [slab(0.012, (s * 0.015, s * 0.02), (0.098, 0.122)) for s in (-1, 1)],
+        look="wood",
     )
     b.part(
         "rocker",
-        box((-0.8 * w, -0.012, 0.113), (0.8 * w, 0.012, 0.119)),
-        [box((s * 0.8 * w - 0.012, -0.012, 0.118), (s * 0.8 * w + 0.012, 0.012, 0.124)) for s in (-1, 1)],
-        material="metal",
+        slab(0.8 * w, 0.012, (0.113, 0.119)),
+        [slab((s * 0.8 * w - 0.012, s * 0.8 * w + 0.012), 0.012, (0.118, 0.124)) for s in (-1, 1)],
+        look="metal",
     )
-    b.hinge("rocker", parent="case", axis=Y, pivot=(0, 0, 0.116), upper=0.12, lower=-0.12)
+    b.hinge("rocker", "case", Y, (0, 0, 0.116), 0.12, lower=-0.12)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"hand_{k}",
             b.cylinder(0.003, (s * w / 2, -0.03, 0.052), (s * w / 2, -0.034, 0.052)),
             beam(0.003, 0.002, (s * w / 2, -0.032, 0.052), (s * w / 2, -0.032, 0.08)),
-            material="steel",
-            color="black",
+            look="black steel",
         )
-        b.spin(f"hand_{k}", parent="case", axis=-Y, pivot=(s * w / 2, 0, 0.052))
+        b.spin(f"hand_{k}", "case", -Y, (s * w / 2, 0, 0.052))
 
 
-@kind(
-    "drafting table",
-    words="drawing table, drawing board, art table, architect table",
-    width=length(0.8, 1.3),
-    depth=length(0.55, 0.8),
-)
+@kind(words="drawing table, drawing board, art table, architect table", width=(0.8, 1.3), depth=(0.55, 0.8))
 def drafting_table(b: ObjectBuilder, width: float, depth: float) -> None:
     b.part(
         "frame",
-        [box((s * 0.4 * width - 0.02, -0.3, 0), (s * 0.4 * width + 0.02, 0.3, 0.05)) for s in (-1, 1)],
-        [box((s * 0.4 * width - 0.02, -0.03, 0.04), (s * 0.4 * width + 0.02, 0.03, 0.72)) for s in (-1, 1)],
-        box((-0.4 * width, -0.02, 0.2), (0.4 * width, 0.02, 0.26)),
-        material="steel",
-        color="black",
+        [slab((s * 0.4 * width - 0.02, s * 0.4 * width + 0.02), 0.3, (0, 0.05)) for s in (-1, 1)],
+        [slab((s * 0.4 * width - 0.02, s * 0.4 * width + 0.02), 0.03, (0.04, 0.72)) for s in (-1, 1)],
+        slab(0.4 * width, 0.02, (0.2, 0.26)),
+        look="black steel",
     )
     b.part(
         "board",
-        box((-width / 2, -depth / 2, 0.75), (width / 2, depth / 2, 0.775)),
-        box((-width / 2, -depth / 2 - 0.012, 0.75), (width / 2, -depth / 2 + 0.001, 0.79)),
-        [box((s * 0.4 * width - 0.05, -0.03, 0.72), (s * 0.4 * width - 0.025, 0.03, 0.751)) for s in (-1, 1)],
-        material="wood",
-        color="white",
+        slab(width / 2, depth / 2, (0.75, 0.775)),
+        slab(width / 2, (-depth / 2 - 0.012, -depth / 2 + 0.001), (0.75, 0.79)),
+        [slab((s * 0.4 * width - 0.05, s * 0.4 * width - 0.025), 0.03, (0.72, 0.751)) for s in (-1, 1)],
+        look="white wood",
     )
-    b.hinge("board", parent="frame", axis=X, pivot=(0, 0, 0.715), upper=1.0, lower=0)
+    b.hinge("board", "frame", X, (0, 0, 0.715), 1.0, lower=0)
 
 
-@kind(
-    "lectern",
-    words="pulpit, speaker desk, music stand, note stand, podium, book stand",
-    height=length(0.95, 1.2),
-)
+@kind(words="pulpit, speaker desk, music stand, note stand, podium, book stand", height=(0.95, 1.2))
 def lectern(b: ObjectBuilder, height: float) -> None:
-    b.part(
-        "base",
-        b.cylinder(0.22, (0, 0, 0), (0, 0, 0.03)),
-        b.tube(0.035, 0.028, (0, 0, 0.02), (0, 0, 0.75 * height)),
-        material="steel",
-        color="black",
-    )
+    b.part("base", b.cylinder(0.22, 0, 0.03), b.tube(0.035, 0.028, 0.02, 0.75 * height), look="black steel")
     b.part(
         "post",
-        b.cylinder(0.026, (0, 0, 0.25 * height), (0, 0, height)),
-        [box((s * 0.03, -0.03, height - 0.01), (s * 0.038, 0.03, height + 0.05)) for s in (-1, 1)],
-        box((-0.038, -0.03, height - 0.012), (0.038, 0.03, height)),
-        material="steel",
+        b.cylinder(0.026, 0.25 * height, height),
+        [slab((s * 0.03, s * 0.038), 0.03, (height - 0.01, height + 0.05)) for s in (-1, 1)],
+        slab(0.038, 0.03, (height - 0.012, height)),
+        look="steel",
     )
-    b.slide("post", parent="base", axis=Z, upper=0.3 * height)
+    b.slide("post", "base", Z, 0.3 * height)
     b.part(
         "desk",
-        box((-0.25, -0.18, height + 0.085), (0.25, 0.18, height + 0.1)),
-        box((-0.25, -0.2, height + 0.085), (0.25, -0.179, height + 0.13)),
-        box((-0.028, -0.02, height + 0.02), (0.028, 0.02, height + 0.086)),
-        material="wood",
+        slab(0.25, 0.18, (height + 0.085, height + 0.1)),
+        slab(0.25, (-0.2, -0.179), (height + 0.085, height + 0.13)),
+        slab(0.028, 0.02, (height + 0.02, height + 0.086)),
+        look="wood",
     )
-    b.hinge("desk", parent="post", axis=X, pivot=(0, 0, height + 0.035), upper=0.5, lower=0)
+    b.hinge("desk", "post", X, (0, 0, height + 0.035), 0.5, lower=0)
 
 
-@kind(
-    "binding machine",
-    words="comb binder",
-    width=length(0.32, 0.42),
-)
+@kind(words="comb binder", width=(0.32, 0.42))
 def binding_machine(b: ObjectBuilder, width: float) -> None:
     b.part(
         "body",
-        box((-width / 2, -0.1, 0), (width / 2, 0.1, 0.1)),
-        [box((s * width / 2, -0.05, 0.08), (s * (width / 2 - 0.012), 0.05, 0.16)) for s in (-1, 1)],
-        color="grey",
+        slab(width / 2, 0.1, (0, 0.1)),
+        [slab((s * width / 2, s * (width / 2 - 0.012)), 0.05, (0.08, 0.16)) for s in (-1, 1)],
+        look="grey",
     )
-    b.bore("body", box((-0.42 * width, -0.2, 0.015), (0.42 * width, 0.05, 0.045)))
-    b.part("drawer", box((-0.415 * width, -0.11, 0.017), (0.415 * width, 0.04, 0.042)), color="black")
-    b.cut("drawer", box((-0.4 * width, -0.09, 0.022), (0.4 * width, 0.035, 0.1)))
-    b.slide("drawer", parent="body", axis=-Y, upper=0.1)
+    b.bore("body", slab(0.42 * width, (-0.2, 0.05), (0.015, 0.045)))
+    b.part("drawer", slab(0.415 * width, (-0.11, 0.04), (0.017, 0.042)), look="black")
+    b.cut("drawer", slab(0.4 * width, (-0.09, 0.035), (0.022, 0.1)))
+    b.slide("drawer", "body", -Y, 0.1)
     b.part(
         "lever",
-        box((-width / 2 + 0.014, 0.015, 0.13), (width / 2 - 0.014, 0.04, 0.15)),
+        slab(width / 2 - 0.014, (0.015, 0.04), (0.13, 0.15)),
         [beam(0.02, 0.012, (s * 0.42 * width, 0.028, 0.14), (s * 0.42 * width, -0.05, 0.3), X) for s in (-1, 1)],
         b.cylinder(0.012, (-0.43 * width, -0.05, 0.3), (0.43 * width, -0.05, 0.3)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("lever", parent="body", axis=X, pivot=(0, 0.028, 0.14), upper=0.9, lower=0)
+    b.hinge("lever", "body", X, (0, 0.028, 0.14), 0.9, lower=0)
 
 
-@kind(
-    "visor helmet",
-    words="welding helmet, motorcycle helmet, helmet with visor, knight helmet, face shield",
-    size=length(0.9, 1.1),
-)
+@kind(words="welding helmet, motorcycle helmet, helmet with visor, knight helmet, face shield", size=(0.9, 1.1))
 def visor_helmet(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
-    b.part("shell", ball(0.13 * size, p(0, 0, 0.13)), color="black")
+    b.part("shell", ball(0.13 * size, p(0, 0, 0.13)), look="black")
     b.cut(
         "shell",
         ball(0.118 * size, p(0, 0, 0.13)),
         box(p(-0.2, -0.2, -0.1), p(0.2, 0.2, 0.06)),
         box(p(-0.09, -0.2, 0.06), p(0.09, -0.04, 0.15)),
     )
-    b.part("visor", ball(0.139 * size, p(0, 0, 0.13)), material="glass")
+    b.part("visor", ball(0.139 * size, p(0, 0, 0.13)), look="glass")
     b.cut(
         "visor",
         ball(0.132 * size, p(0, 0, 0.13)),
@@ -736,109 +588,81 @@ def visor_helmet(b: ObjectBuilder, size: float) -> None:
         box(p(-0.2, -0.2, 0.155), p(0.2, 0.2, 0.4)),
         box(p(-0.2, 0.012, -0.1), p(0.2, 0.2, 0.4)),
     )
-    b.hinge("visor", parent="shell", axis=-X, pivot=p(0, 0, 0.13), upper=1.0)
+    b.hinge("visor", "shell", -X, p(0, 0, 0.13), 1.0)
 
 
-@kind(
-    "tablet stand",
-    words="phone stand, phone holder, book holder, cookbook stand, tablet holder",
-    size=length(0.9, 1.3),
-)
+@kind(words="phone stand, phone holder, book holder, cookbook stand, tablet holder", size=(0.9, 1.3))
 def tablet_stand(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "base",
         box(p(-0.06, -0.06, 0), p(0.06, 0.06, 0.01)),
         [box(p(s * 0.018, 0.02, 0.008), p(s * 0.025, 0.05, 0.05)) for s in (-1, 1)],
-        material="metal",
+        look="metal",
     )
-    b.part("arm", beam(0.03 * size, 0.01 * size, p(0, 0.035, 0.035), p(0, 0, 0.14)), material="metal")
-    b.hinge("arm", parent="base", axis=X, pivot=p(0, 0.035, 0.035), upper=0.5, lower=-0.4)
+    b.part("arm", beam(0.03 * size, 0.01 * size, p(0, 0.035, 0.035), p(0, 0, 0.14)), look="metal")
+    b.hinge("arm", "base", X, p(0, 0.035, 0.035), 0.5, lower=-0.4)
     b.part(
         "back",
         box(p(-0.07, -0.015, 0.1), p(0.07, -0.009, 0.22)),
         box(p(-0.07, -0.035, 0.1), p(0.07, -0.009, 0.106)),
         [box(p(s * 0.017, -0.01, 0.125), p(s * 0.022, 0.008, 0.15)) for s in (-1, 1)],
-        material="metal",
+        look="metal",
     )
-    b.hinge("back", parent="arm", axis=X, pivot=p(0, 0, 0.14), upper=0.25, lower=-0.4)
+    b.hinge("back", "arm", X, p(0, 0, 0.14), 0.25, lower=-0.4)
 
 
-@kind(
-    "intercom",
-    words="door phone, doorbell, door bell button, entry phone",
-    number=whole(1, 5, words="button"),
-)
+@kind(words="door phone, doorbell, door bell button, entry phone", number=whole(1, 5, words="button"))
 def intercom(b: ObjectBuilder, number: int) -> None:
     height = 0.12 + 0.03 * number
     b.part(
         "panel",
-        box((-0.05, 0, 0), (0.05, 0.02, height)),
+        slab(0.05, (0, 0.02), (0, height)),
         [
             b.cylinder(0.004, (x, -0.001, height - 0.03 - 0.01 * k), (x, 0.001, height - 0.03 - 0.01 * k))
             for x in (-0.015, 0, 0.015)
             for k in range(3)
         ],
-        material="steel",
+        look="steel",
     )
     for k, z in enumerate(spread(number, 0.02, height - 0.07)):
-        button(
-            b,
-            f"button_{k}",
-            parent="panel",
-            at=(0, 0, z),
-            size=(0.02, 0.02),
-            high=0.005,
-            out=-Y,
-            is_round=True,
-            material="chrome",
-        )
+        button(b, f"button_{k}", "panel", (0, 0, z), (0.02, 0.02), 0.005, -Y, is_round=True, material="chrome")
 
 
-@kind(
-    "usb stick",
-    words="flash drive, thumb drive, memory stick",
-    size=length(0.9, 1.2),
-)
+@kind(words="flash drive, thumb drive, memory stick", size=(0.9, 1.2))
 def usb_stick(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "stick",
         box(p(-0.01, -0.02, 0), p(0.01, 0.025, 0.007)),
         box(p(-0.006, -0.036, 0.001), p(0.006, -0.02, 0.006)),
-        color="black",
+        look="black",
     )
     b.part(
         "cover",
         box(p(-0.0105, -0.038, 0.008), p(0.0105, 0.03, 0.0095)),
         box(p(-0.0105, -0.038, -0.0025), p(0.0105, 0.03, -0.001)),
         box(p(-0.0105, -0.0395, -0.0025), p(0.0105, -0.038, 0.0095)),
-        material="steel",
+        look="steel",
     )
-    b.spin("cover", parent="stick", axis=Z, pivot=p(0, 0.018, 0))
+    b.spin("cover", "stick", Z, p(0, 0.018, 0))
 
 
-@kind(
-    "work light",
-    words="flood lamp on a tripod, stage lamp stand",
-    height=length(1.2, 2.0),
-)
+@kind(words="flood lamp on a tripod, stage lamp stand", height=(1.2, 2.0))
 def work_light(b: ObjectBuilder, height: float) -> None:
     b.part(
         "stand",
         [beam(0.025, 0.025, (0, 0, 0.4), (0.4 * cos(a), 0.4 * sin(a), 0.012)) for a in (0.5, 2.6, 4.7)],
-        b.cylinder(0.016, (0, 0, 0.3), (0, 0, height)),
-        box((-0.17, -0.012, height - 0.01), (0.17, 0.012, height + 0.015)),
-        [box((s * 0.17, -0.012, height - 0.01), (s * 0.162, 0.012, height + 0.13)) for s in (-1, 1)],
-        material="steel",
-        color="yellow",
+        b.cylinder(0.016, 0.3, height),
+        slab(0.17, 0.012, (height - 0.01, height + 0.015)),
+        [slab((s * 0.17, s * 0.162), 0.012, (height - 0.01, height + 0.13)) for s in (-1, 1)],
+        look="yellow steel",
     )
     b.part(
         "head",
-        box((-0.15, -0.05, height + 0.03), (0.15, 0.03, height + 0.2)),
+        slab(0.15, (-0.05, 0.03), (height + 0.03, height + 0.2)),
         [b.cylinder(0.006, (s * 0.149, 0, height + 0.11), (s * 0.16, 0, height + 0.11)) for s in (-1, 1)],
-        material="metal",
-        color="black",
+        look="black metal",
     )
-    b.cut("head", box((-0.14, -0.1, height + 0.04), (0.14, -0.03, height + 0.19)))
-    b.hinge("head", parent="stand", axis=X, pivot=(0, 0, height + 0.11), upper=0.5, lower=-0.9)
+    b.cut("head", slab(0.14, (-0.1, -0.03), (height + 0.04, height + 0.19)))
+    b.hinge("head", "stand", X, (0, 0, height + 0.11), 0.5, lower=-0.9)

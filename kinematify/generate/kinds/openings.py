@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.library.kind import kind, length, yes
+from kinematify.generate.library.kind import kind, yes
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, box
+from kinematify.generate.procedural.solids import X, Y, Z, box, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -18,31 +18,23 @@ def surround(d: ObjectBuilder, name: str, wide: float, low: float, high: float, 
     side = d.draw(0.3, 1.0) if kind == "wall" else d.draw(0.03, 0.12)
     back = front + d.draw(0.05, 0.2)
     for s in (-1.0, 1.0):
-        d.part(name, box((s * wide / 2, front, low), (s * (wide / 2 + side), back, high)), material="wood")
+        d.part(name, box((s * wide / 2, front, low), (s * (wide / 2 + side), back, high)), look="wood")
     if kind != "posts":
-        d.part(name, box((-wide / 2 - side, front, high), (wide / 2 + side, back, high + side)))
+        d.part(name, slab(wide / 2 + side, (front, back), (high, high + side)))
     if sill or d.maybe(0.2):
-        d.part(name, box((-wide / 2 - side, front, low - d.draw(0.02, 0.06)), (wide / 2 + side, back, low)))
+        d.part(name, slab(wide / 2 + side, (front, back), (low - d.draw(0.02, 0.06), low)))
     elif kind == "posts":
-        d.part(
-            name, box((-wide / 2 - side, front, low - 0.05), (wide / 2 + side, back, low - d.draw(0.0, 0.02) - 0.01))
-        )
+        d.part(name, slab(wide / 2 + side, (front, back), (low - 0.05, low - d.draw(0.0, 0.02) - 0.01)))
         for s in (-1.0, 1.0):
             d.part(name, box((s * wide / 2, front, low - 0.05), (s * (wide / 2 + side), back, low)))
     if kind == "frame" and d.maybe(0.3):  # a trim around it, on the far side
         trim = side + d.draw(0.02, 0.05)
         for s in (-1.0, 1.0):
             d.part(name, box((s * wide / 2, back - 0.01, low), (s * (wide / 2 + trim), back + 0.01, high)))
-        d.part(name, box((-wide / 2 - trim, back - 0.01, high), (wide / 2 + trim, back + 0.01, high + trim)))
+        d.part(name, slab(wide / 2 + trim, (back - 0.01, back + 0.01), (high, high + trim)))
 
 
-@kind(
-    "dutch door",
-    words="stable door, half door, split door",
-    width=length(0.7, 1.1),
-    height=length(1.9, 2.2),
-    thickness=length(0.03, 0.06),
-)
+@kind(words="stable door, half door, split door", width=(0.7, 1.1), height=(1.9, 2.2), thickness=(0.03, 0.06))
 def dutch_door(b: ObjectBuilder, width: float, height: float, thickness: float) -> None:
     """A leaf that is cut across: the halves turn alone."""
     surround(b, "frame", wide=width, low=0.0, high=height, front=-thickness, sill=b.maybe(0.3))
@@ -52,9 +44,9 @@ def dutch_door(b: ObjectBuilder, width: float, height: float, thickness: float) 
         leaf(
             b,
             name,
-            parent="frame",
-            lower=(-width / 2, -thickness, a),
-            upper=(width / 2, 0, b_),
+            "frame",
+            (-width / 2, -thickness, a),
+            (width / 2, 0, b_),
             hinge=side,
             inset=True,
             reach=b.draw(1.4, 2.2),
@@ -63,12 +55,11 @@ def dutch_door(b: ObjectBuilder, width: float, height: float, thickness: float) 
 
 
 @kind(
-    "floor hatch",
     words="hatch, trapdoor, trap door, roof hatch, deck hatch, attic hatch, loft hatch",
-    width=length(0.5, 1.0),
-    depth=length(0.5, 0.9),
-    high=length(0.02, 0.06),
-    rim=length(0.1, 0.5),
+    width=(0.5, 1.0),
+    depth=(0.5, 0.9),
+    high=(0.02, 0.06),
+    rim=(0.1, 0.5),
     flush=yes(0.5),
 )
 def floor_hatch(b: ObjectBuilder, width: float, depth: float, high: float, rim: float, flush: bool) -> None:
@@ -76,18 +67,18 @@ def floor_hatch(b: ObjectBuilder, width: float, depth: float, high: float, rim: 
     for s in (-1, 1):
         b.part(
             "deck",
-            box((s * width / 2, -depth / 2 - rim, -0.08), (s * (width / 2 + rim), depth / 2 + rim, 0)),
-            box((-width / 2, s * depth / 2, -0.08), (width / 2, s * (depth / 2 + rim), 0)),
-            material="wood",
+            slab((s * width / 2, s * (width / 2 + rim)), depth / 2 + rim, (-0.08, 0)),
+            slab(width / 2, (s * depth / 2, s * (depth / 2 + rim)), (-0.08, 0)),
+            look="wood",
         )
     lift = -high if flush else 0
     edge = 0 if flush else 0.03
     leaf(
         b,
         "flap",
-        parent="deck",
-        lower=(-width / 2 - edge, -depth / 2 - edge, lift),
-        upper=(width / 2 + edge, depth / 2 + edge, lift + high),
+        "deck",
+        (-width / 2 - edge, -depth / 2 - edge, lift),
+        (width / 2 + edge, depth / 2 + edge, lift + high),
         hinge=b.pick(X, -X, Y, -Y),
         out=Z,
         inset=flush,

@@ -6,28 +6,23 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import button, knob, plunger
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "spinning top",
-    walls=3,
-    words="humming top, toy top",
-    size=length(0.9, 1.3),
-)
+@kind(walls=3, words="humming top, toy top", size=(0.9, 1.3))
 def spinning_top(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "stand",
         b.cylinder(0.05 * size, p(0, 0, 0), p(0, 0, 0.01)),
         b.cylinder(0.012 * size, p(0, 0, 0), p(0, 0, 0.03)),
-        material="wood",
+        look="wood",
     )
     b.part(
         "top",
@@ -42,42 +37,31 @@ def spinning_top(b: ObjectBuilder, size: float) -> None:
             ],
             (0, 0, 0),
         ),
-        material="metal",
-        color="red",
+        look="red metal",
     )
     b.bore("top", b.cylinder(0.0065 * size, p(0, 0, 0.06), p(0, 0, 1)))
-    b.spin("top", parent="stand", axis=Z, pivot=(0, 0, 0))
+    b.spin("top", "stand", Z, (0, 0, 0))
     b.part(
         "handle",
         b.cylinder(0.005 * size, p(0, 0, 0.09), p(0, 0, 0.24)),
         ball(0.014 * size, p(0, 0, 0.245)),
-        material="wood",
-        color="yellow",
+        look="yellow wood",
     )
-    b.slide("handle", parent="top", axis=-Z, upper=0.025, lower=-0.03)
+    b.slide("handle", "top", -Z, 0.025, lower=-0.03)
 
 
-@kind(
-    "rubiks cube",
-    words="rubik's cube, magic cube, puzzle cube, twisty puzzle",
-    size=length(0.05, 0.07),
-)
+@kind(words="rubik's cube, magic cube, puzzle cube, twisty puzzle", size=(0.05, 0.07))
 def rubiks_cube(b: ObjectBuilder, size: float) -> None:
     s = size / 3
-    b.part(
-        "middle_layer",
-        box((-1.5 * s, -1.5 * s, s), (1.5 * s, 1.5 * s, 2 * s)),
-        b.cylinder(0.3 * s, (0, 0, 0.2 * s), (0, 0, 2.8 * s)),
-        color="blue",
-    )
-    b.part("top_layer", box((-1.5 * s, -1.5 * s, 2.01 * s), (1.5 * s, 1.5 * s, 3 * s)), color="yellow")
-    b.part("bottom_layer", box((-1.5 * s, -1.5 * s, 0), (1.5 * s, 1.5 * s, 0.99 * s)), color="red")
+    b.part("middle_layer", slab(1.5 * s, 1.5 * s, (s, 2 * s)), b.cylinder(0.3 * s, 0.2 * s, 2.8 * s), look="blue")
+    b.part("top_layer", slab(1.5 * s, 1.5 * s, (2.01 * s, 3 * s)), look="yellow")
+    b.part("bottom_layer", slab(1.5 * s, 1.5 * s, (0, 0.99 * s)), look="red")
     for name in ("top_layer", "bottom_layer"):
-        b.cut(name, b.cylinder(0.32 * s, (0, 0, 0.15 * s), (0, 0, 2.85 * s)))
-        b.spin(name, parent="middle_layer", axis=Z, pivot=(0, 0, 0))
+        b.cut(name, b.cylinder(0.32 * s, 0.15 * s, 2.85 * s))
+        b.spin(name, "middle_layer", Z, (0, 0, 0))
 
 
-@kind("crossbow", size=length(0.8, 1.2))
+@kind(size=(0.8, 1.2))
 def crossbow(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -85,49 +69,41 @@ def crossbow(b: ObjectBuilder, size: float) -> None:
         box(p(-0.03, -0.4, 0), p(0.03, 0.3, 0.05)),
         beam(0.04 * size, 0.08 * size, p(0, 0.25, 0.02), p(0, 0.5, -0.03), Z),
         [beam(0.02 * size, 0.03 * size, p(0, -0.38, 0.03), p(s * 0.35, -0.25, 0.03)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     b.bore("stock", box(p(-0.008, 0.09, -0.1), p(0.008, 0.16, 0.03)), box(p(-0.01, -0.38, 0.03), p(0.01, 0.15, 0.1)))
-    b.part("trigger", beam(0.012 * size, 0.01 * size, p(0, 0.12, 0.02), p(0, 0.14, -0.06), Y), material="steel")
-    b.hinge("trigger", parent="stock", axis=X, pivot=p(0, 0.12, 0.02), upper=0.1, lower=-0.2)
-    b.part("slide", box(p(-0.009, -0.1, 0.031), p(0.009, -0.06, 0.06)), material="steel")
-    b.slide("slide", parent="stock", axis=Y, upper=0.15, lower=-0.2)
+    b.part("trigger", beam(0.012 * size, 0.01 * size, p(0, 0.12, 0.02), p(0, 0.14, -0.06), Y), look="steel")
+    b.hinge("trigger", "stock", X, p(0, 0.12, 0.02), 0.1, lower=-0.2)
+    b.part("slide", box(p(-0.009, -0.1, 0.031), p(0.009, -0.06, 0.06)), look="steel")
+    b.slide("slide", "stock", Y, 0.15, lower=-0.2)
 
 
-@kind(
-    "fishing rod",
-    words="fishing reel, fishing pole",
-    length=length(0.8, 1.4),
-)
+@kind(words="fishing reel, fishing pole", length=(0.8, 1.4))
 def fishing_rod(b: ObjectBuilder, length: float) -> None:
     b.part(
         "rod",
         b.cylinder(0.013, (0, 0.25, 0), (0, -0.2, 0)),
         b.cylinder(0.007, (0, -0.19, 0), (0, -length, 0)),
-        box((-0.012, -0.03, -0.05), (0.012, 0.03, -0.01)),
-        [box((s * 0.026, -0.03, -0.1), (s * 0.022, 0.03, -0.04)) for s in (-1, 1)],
-        box((-0.026, -0.03, -0.052), (0.026, 0.03, -0.045)),
-        color="black",
+        slab(0.012, 0.03, (-0.05, -0.01)),
+        [slab((s * 0.026, s * 0.022), 0.03, (-0.1, -0.04)) for s in (-1, 1)],
+        slab(0.026, 0.03, (-0.052, -0.045)),
+        look="black",
     )
     b.bore("rod", b.cylinder(0.0055, (0, 1, 0), (0, -2, 0)), b.cylinder(0.0045, (-0.05, 0, -0.075), (0.05, 0, -0.075)))
-    b.part("tip", b.cylinder(0.004, (0, -0.3, 0), (0, -length - 0.1, 0)), color="red")
-    b.slide("tip", parent="rod", axis=-Y, upper=0.6 * length - 0.2)
+    b.part("tip", b.cylinder(0.004, (0, -0.3, 0), (0, -length - 0.1, 0)), look="red")
+    b.slide("tip", "rod", -Y, 0.6 * length - 0.2)
     b.part(
         "spool",
         b.cylinder(0.0035, (-0.02, 0, -0.075), (0.05, 0, -0.075)),
         b.cylinder(0.018, (-0.02, 0, -0.075), (0.02, 0, -0.075)),
         beam(0.008, 0.005, (0.045, 0, -0.075), (0.045, 0, -0.125), X),
         b.cylinder(0.006, (0.043, 0, -0.12), (0.07, 0, -0.12)),
-        material="metal",
+        look="metal",
     )
-    b.spin("spool", parent="rod", axis=X, pivot=(0, 0, -0.075))
+    b.spin("spool", "rod", X, (0, 0, -0.075))
 
 
-@kind(
-    "elliptical trainer",
-    words="cross trainer, elliptical, air walker",
-    size=length(0.9, 1.1),
-)
+@kind(words="cross trainer, elliptical, air walker", size=(0.9, 1.1))
 def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -140,7 +116,7 @@ def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
         box(p(-0.15, -0.5, 1.35), p(0.15, -0.4, 1.55)),
         b.cylinder(0.3 * size, p(-0.06, 0.45, 0.4), p(0.06, 0.45, 0.4)),
         box(p(-0.06, 0.4, 0.05), p(0.06, 0.5, 0.3)),
-        color="black",
+        look="black",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
@@ -149,17 +125,12 @@ def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
             beam(0.03 * size, 0.03 * size, p(s * 0.225, -0.44, 0.88), p(s * 0.225, -0.3, 1.5), X),
             beam(0.03 * size, 0.03 * size, p(s * 0.225, -0.44, 0.82), p(s * 0.225, -0.4, 0.25), X),
             box(p(s * 0.12, -0.45, 0.18), p(s * 0.24, 0, 0.25)),
-            material="steel",
-            color="grey",
+            look="grey steel",
         )
-        b.hinge(f"handle_{k}", parent="frame", axis=X, pivot=p(0, -0.44, 0.85), upper=0.25, lower=-0.25)
+        b.hinge(f"handle_{k}", "frame", X, p(0, -0.44, 0.85), 0.25, lower=-0.25)
 
 
-@kind(
-    "weight bench",
-    words="bench press, training bench, sit up bench",
-    size=length(0.9, 1.1),
-)
+@kind(words="bench press, training bench, sit up bench", size=(0.9, 1.1))
 def weight_bench(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -172,60 +143,50 @@ def weight_bench(b: ObjectBuilder, size: float) -> None:
         [box(p(s * 0.4, 0.6, 0.02), p(s * 0.34, 0.66, 0.95)) for s in (-1, 1)],
         box(p(-0.4, 0.61, 0.02), p(0.4, 0.65, 0.06)),
         box(p(-0.14, -0.6, 0.36), p(0.14, -0.2, 0.42)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.part("back", box(p(-0.14, -0.19, 0.365), p(0.14, 0.55, 0.42)), color="red")
-    b.hinge("back", parent="frame", axis=X, pivot=p(0, -0.19, 0.42), upper=0.9)
+    b.part("back", box(p(-0.14, -0.19, 0.365), p(0.14, 0.55, 0.42)), look="red")
+    b.hinge("back", "frame", X, p(0, -0.19, 0.42), 0.9)
     b.part(
         "bar",
         b.cylinder(0.014 * size, p(-0.7, 0.63, 0.966), p(0.7, 0.63, 0.966)),
         [b.cylinder(0.18 * size, p(s * 0.55, 0.63, 0.966), p(s * 0.61, 0.63, 0.966)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
-    b.slide("bar", parent="frame", axis=Z, upper=0.3)
+    b.slide("bar", "frame", Z, 0.3)
 
 
-@kind("dart board cabinet", words="dartboard", width=length(0.45, 0.6))
+@kind("dart board cabinet", words="dartboard", width=(0.45, 0.6))
 def dartboard_cabinet(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
-        "cabinet",
-        box((-w, 0, 0), (w, 0.05, width)),
-        b.cylinder(0.42 * width, (0, -0.02, w), (0, 0.01, w)),
-        material="wood",
+        "cabinet", slab(w, (0, 0.05), (0, width)), b.cylinder(0.42 * width, (0, -0.02, w), (0, 0.01, w)), look="wood"
     )
     b.cut("cabinet", b.cylinder(0.36 * width, (0, -1, w), (0, -0.016, w)))
     for k, s in enumerate((-1, 1)):
-        b.part(f"door_{k}", box((s * 0.002, -0.045, 0), (s * w, -0.03, width)), material="wood")
+        b.part(f"door_{k}", box((s * 0.002, -0.045, 0), (s * w, -0.03, width)), look="wood")
         b.part("cabinet", box((s * w, -0.028, 0), (s * (w - 0.02), 0.01, width)))
-        b.hinge(f"door_{k}", parent="cabinet", axis=s * Z, pivot=(s * w, -0.045, 0), upper=2.4)
+        b.hinge(f"door_{k}", "cabinet", s * Z, (s * w, -0.045, 0), 2.4)
 
 
-@kind(
-    "pinball machine",
-    words="pinball, flipper machine",
-    width=length(0.45, 0.6),
-    length=length(0.9, 1.2),
-)
+@kind(words="pinball, flipper machine", width=(0.45, 0.6), length=(0.9, 1.2))
 def pinball_machine(b: ObjectBuilder, width: float, length: float) -> None:
     w = width / 2
     b.part(
         "cabinet",
-        box((-w, 0, 0.7), (w, length, 0.95)),
-        box((-w, length - 0.25, 0.94), (w, length, 1.6)),
+        slab(w, (0, length), (0.7, 0.95)),
+        slab(w, (length - 0.25, length), (0.94, 1.6)),
         [
             box((x - 0.025, y - 0.025, 0), (x + 0.025, y + 0.025, 0.71))
             for x in (-w + 0.025, w - 0.025)
             for y in (0.025, length - 0.025)
         ],
-        material="wood",
-        color="red",
+        look="red wood",
     )
     b.cut(
         "cabinet",
-        box((-w + 0.025, 0.03, 0.86), (w - 0.025, length - 0.26, 2)),
-        box((-w + 0.03, 0.05, 0.72), (w - 0.03, length - 0.05, 0.84)),
+        slab(w - 0.025, (0.03, length - 0.26), (0.86, 2)),
+        slab(w - 0.03, (0.05, length - 0.05), (0.72, 0.84)),
     )
     b.part(
         "cabinet",
@@ -240,35 +201,17 @@ def pinball_machine(b: ObjectBuilder, width: float, length: float) -> None:
             f"flipper_{k}",
             b.cylinder(0.014, (s * 0.1, 0.14, 0.862), (s * 0.1, 0.14, 0.882)),
             beam(0.018, 0.018, (s * 0.1, 0.14, 0.872), (s * 0.035, 0.115, 0.872)),
-            color="yellow",
+            look="yellow",
         )
         b.cut(f"flipper_{k}", b.cylinder(0.0065, (s * 0.1, 0.14, 0), (s * 0.1, 0.14, 2)))
-        b.hinge(f"flipper_{k}", parent="cabinet", axis=s * -Z, pivot=(s * 0.1, 0.14, 0), upper=0.8)
-        button(
-            b,
-            f"button_{k}",
-            parent="cabinet",
-            at=(s * w, 0.1, 0.85 - 0.02),
-            size=(0.024, 0.024),
-            high=0.008,
-            out=s * X,
-            is_round=True,
-        )
-    plunger(
-        b,
-        "plunger",
-        parent="cabinet",
-        start=(w - 0.06, -0.06, 0.8),
-        end=(w - 0.06, 0.045, 0.8),
-        radius=0.008,
-        travel=0.05,
-    )
+        b.hinge(f"flipper_{k}", "cabinet", s * -Z, (s * 0.1, 0.14, 0), 0.8)
+        button(b, f"button_{k}", "cabinet", (s * w, 0.1, 0.85 - 0.02), (0.024, 0.024), 0.008, s * X, is_round=True)
+    plunger(b, "plunger", "cabinet", (w - 0.06, -0.06, 0.8), (w - 0.06, 0.045, 0.8), 0.008, travel=0.05)
 
 
 @kind(
-    "arcade machine",
     words="arcade cabinet, video game machine",
-    width=length(0.5, 0.7),
+    width=(0.5, 0.7),
     number=whole(1, 10, default=4, usual=(3, 6), words="button"),
 )
 def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
@@ -281,20 +224,19 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
             width,
             "x",
         ),
-        material="wood",
-        color="black",
+        look="black wood",
     )
     b.cut(
         "cabinet",
-        box((-w + 0.03, -0.3, 0.1), (w - 0.03, 0.32, 0.85)),
-        box((-0.42 * width, -0.4, 0.15), (0.42 * width, -0.3, 0.75)),
+        slab(w - 0.03, (-0.3, 0.32), (0.1, 0.85)),
+        slab(0.42 * width, (-0.4, -0.3), (0.15, 0.75)),
     )
     leaf(
         b,
         "door",
-        parent="cabinet",
-        lower=(-0.43 * width, -0.368, 0.13),
-        upper=(0.43 * width, -0.351, 0.77),
+        "cabinet",
+        (-0.43 * width, -0.368, 0.13),
+        (0.43 * width, -0.351, 0.77),
         hinge=-X,
         out=-Y,
         reach=1.8,
@@ -303,20 +245,16 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
     up = vector(0, -0.496, 0.868)
     at = vector(-0.25 * width, -0.22, 1.1029)
     b.bore("cabinet", b.cone(0.012, 0.026, at - 0.03 * up, at + 0.001 * up))
-    b.part("joystick", b.cylinder(0.005, at - 0.025 * up, at + 0.06 * up), ball(0.018, at + 0.07 * up), color="red")
-    b.hinge("joystick", parent="cabinet", axis=X, pivot=at - 0.02 * up, upper=0.25, lower=-0.25)
+    b.part("joystick", b.cylinder(0.005, at - 0.025 * up, at + 0.06 * up), ball(0.018, at + 0.07 * up), look="red")
+    b.hinge("joystick", "cabinet", X, at - 0.02 * up, 0.25, lower=-0.25)
     for k in range(number):
         b_ = vector(0.02 + 0.06 * (k % 3), -0.26 + 0.06 * (k // 3), 1.1029 + (-0.04 + 0.06 * (k // 3)) * 0.5714)
         b.bore("cabinet", b.cylinder(0.0165, b_ - 0.02 * up, b_ + 0.05 * up))
-        b.part(f"button_{k}", b.cylinder(0.015, b_ - 0.01 * up, b_ + 0.008 * up), color="yellow")
-        b.slide(f"button_{k}", parent="cabinet", axis=-up, upper=0.006)
+        b.part(f"button_{k}", b.cylinder(0.015, b_ - 0.01 * up, b_ + 0.008 * up), look="yellow")
+        b.slide(f"button_{k}", "cabinet", -up, 0.006)
 
 
-@kind(
-    "table tennis table",
-    words="ping pong table, folding table tennis table",
-    size=length(0.8, 1.0),
-)
+@kind(words="ping pong table, folding table tennis table", size=(0.8, 1.0))
 def table_tennis_table(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -326,43 +264,34 @@ def table_tennis_table(b: ObjectBuilder, size: float) -> None:
         box(p(-0.6, -0.02, 0.3), p(0.6, 0.02, 0.36)),
         [box(p(x - 0.03, -0.2, 0.3), p(x + 0.03, 0.2, 0.36)) for x in (-0.6, 0.6)],
         [box(p(x - 0.02, -0.2, 0), p(x + 0.02, 0.2, 0.05)) for x in (-0.6, 0.6)],
-        material="steel",
-        color="black",
+        look="black steel",
     )
     for k, s in enumerate((-1, 1)):
-        b.part(
-            f"half_{k}", box(p(-0.76, s * 0.005, 0.73), p(0.76, s * 1.37, 0.76)), material="wood", color="dark green"
-        )
+        b.part(f"half_{k}", box(p(-0.76, s * 0.005, 0.73), p(0.76, s * 1.37, 0.76)), look="dark green wood")
         b.part("frame", [box(p(x - 0.015, s * 0.035, 0.67), p(x + 0.015, s * 0.005, 0.728)) for x in (-0.6, 0.6)])
-        b.hinge(f"half_{k}", parent="frame", axis=s * X, pivot=p(0, s * 0.005, 0.76), upper=1.5)
+        b.hinge(f"half_{k}", "frame", s * X, p(0, s * 0.005, 0.76), 1.5)
 
 
-@kind("roulette", words="roulette wheel", radius=length(0.2, 0.5))
+@kind(words="roulette wheel", radius=(0.2, 0.5))
 def roulette(b: ObjectBuilder, radius: float) -> None:
     r = radius
-    b.part(
-        "bowl",
-        b.cylinder(r, (0, 0, 0), (0, 0, 0.25 * r)),
-        b.cylinder(0.05 * r, (0, 0, 0.05 * r), (0, 0, 0.35 * r)),
-        material="wood",
-    )
-    b.cut("bowl", b.tube(0.8 * r, 0.05 * r, (0, 0, 0.1 * r), (0, 0, r)))
+    b.part("bowl", b.cylinder(r, 0, 0.25 * r), b.cylinder(0.05 * r, 0.05 * r, 0.35 * r), look="wood")
+    b.cut("bowl", b.tube(0.8 * r, 0.05 * r, 0.1 * r, r))
     b.part(
         "wheel",
-        b.cone(0.77 * r, 0.2 * r, (0, 0, 0.11 * r), (0, 0, 0.28 * r)),
+        b.cone(0.77 * r, 0.2 * r, 0.11 * r, 0.28 * r),
         [
             b.cylinder(0.02 * r, (0, 0, 0.33 * r), (0.2 * r * cos(a), 0.2 * r * sin(a), 0.33 * r))
             for a in (0, 1.57, 3.14, 4.71)
         ],
-        b.cylinder(0.1 * r, (0, 0, 0.25 * r), (0, 0, 0.36 * r)),
-        material="wood",
-        color="red",
+        b.cylinder(0.1 * r, 0.25 * r, 0.36 * r),
+        look="red wood",
     )
-    b.cut("wheel", b.cylinder(0.062 * r, (0, 0, 0), (0, 0, 0.355 * r)))
-    b.spin("wheel", parent="bowl", axis=Z, pivot=(0, 0, 0))
+    b.cut("wheel", b.cylinder(0.062 * r, 0, 0.355 * r))
+    b.spin("wheel", "bowl", Z, (0, 0, 0))
 
 
-@kind("accordion", words="squeezebox", size=length(0.8, 1.1))
+@kind(words="squeezebox", size=(0.8, 1.1))
 def accordion(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -370,24 +299,20 @@ def accordion(b: ObjectBuilder, size: float) -> None:
         box(p(-0.18, 0, 0), p(0, 0.18, 0.36)),
         box(p(0, 0.015, 0.02), p(0.1, 0.165, 0.34)),
         box(p(-0.24, -0.02, 0.03), p(-0.17, 0.06, 0.33)),
-        color="red",
+        look="red",
     )
-    b.part("half", box(p(0.102, 0, 0), p(0.2, 0.18, 0.36)), color="red")
-    b.slide("half", parent="body", axis=X, upper=0.15)
+    b.part("half", box(p(0.102, 0, 0), p(0.2, 0.18, 0.36)), look="red")
+    b.slide("half", "body", X, 0.15)
     for k, z in enumerate(spread(9, 0.04 * size, 0.32 * size)):
         b.part(
             f"key_{k}",
             box((-0.235 * size, -0.036 * size, z - 0.013 * size), (-0.175 * size, -0.022 * size, z + 0.013 * size)),
-            color="white",
+            look="white",
         )
-        b.slide(f"key_{k}", parent="body", axis=Y, upper=0.0015)
+        b.slide(f"key_{k}", "body", Y, 0.0015)
 
 
-@kind(
-    "trumpet",
-    words="cornet, flugelhorn, bugle with valves",
-    size=length(0.9, 1.1),
-)
+@kind(words="cornet, flugelhorn, bugle with valves", size=(0.9, 1.1))
 def trumpet(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -398,7 +323,7 @@ def trumpet(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.006 * size, p(-0.15, 0, -0.02), p(0.15, 0, -0.02)),
         [beam(0.01 * size, 0.01 * size, p(x, 0, -0.022), p(x, 0, 0.052), X) for x in (-0.15, 0.15)],
         b.cone(0.012 * size, 0.006 * size, p(-0.28, 0, 0.05), p(-0.245, 0, 0.05)),
-        material="brass",
+        look="brass",
     )
     b.cut("body", b.cone(0.004 * size, 0.056 * size, p(0.12, 0, 0.05), p(0.301, 0, 0.05)))
     for k, x in enumerate((-0.03, 0, 0.03)):
@@ -407,12 +332,12 @@ def trumpet(b: ObjectBuilder, size: float) -> None:
             f"valve_{k}",
             b.cylinder(0.006 * size, p(x, 0, 0.073), p(x, 0, 0.098)),
             b.cylinder(0.0095 * size, p(x, 0, 0.097), p(x, 0, 0.101)),
-            material="chrome",
+            look="chrome",
         )
-        b.slide(f"valve_{k}", parent="body", axis=-Z, upper=0.014)
+        b.slide(f"valve_{k}", "body", -Z, 0.014)
 
 
-@kind("trombone", walls=4.5, words="slide trombone", size=length(0.9, 1.1))
+@kind(walls=4.5, words="slide trombone", size=(0.9, 1.1))
 def trombone(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -424,7 +349,7 @@ def trombone(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.008 * size, p(0.35, 0.15, 0), p(0, 0.15, 0)),
         b.cone(0.008 * size, 0.09 * size, p(0.01, 0.15, 0), p(-0.4, 0.15, 0)),
         b.cone(0.01 * size, 0.006 * size, p(0.04, -0.05, 0), p(-0.01, -0.05, 0)),
-        material="brass",
+        look="brass",
     )
     b.cut("horn", b.cone(0.006 * size, 0.087 * size, p(0, 0.15, 0), p(-0.401, 0.15, 0)))
     b.part(
@@ -432,15 +357,14 @@ def trombone(b: ObjectBuilder, size: float) -> None:
         [b.tube(0.0095 * size, 0.0075 * size, p(-0.08, y, 0), p(-0.75, y, 0)) for y in (-0.05, 0.05)],
         b.cylinder(0.009 * size, p(-0.75, -0.058, 0), p(-0.75, 0.058, 0)),
         beam(0.008 * size, 0.006 * size, p(-0.1, -0.042, 0), p(-0.1, 0.042, 0)),
-        material="brass",
+        look="brass",
     )
-    b.slide("slide", parent="horn", axis=-X, upper=0.5)
+    b.slide("slide", "horn", -X, 0.5)
 
 
 @kind(
-    "guitar",
     words="acoustic guitar, ukulele, electric guitar, bass guitar",
-    size=length(0.5, 1.0),
+    size=(0.5, 1.0),
     number=whole(4, 6, words="peg, string, tuner"),
 )
 def guitar(b: ObjectBuilder, size: float, number: int) -> None:
@@ -452,7 +376,7 @@ def guitar(b: ObjectBuilder, size: float, number: int) -> None:
         box(p(-0.03, 0.3, 0.02), p(0.03, 0.75, 0.06)),
         box(p(-0.045, 0.74, 0.015), p(0.045, 0.92, 0.045)),
         box(p(-0.07, -0.08, 0.049), p(0.07, -0.05, 0.062)),
-        material="wood",
+        look="wood",
     )
     b.cut(
         "body",
@@ -463,19 +387,10 @@ def guitar(b: ObjectBuilder, size: float, number: int) -> None:
     for k in range(number):
         s = -1 if k % 2 else 1
         y = 0.77 + 0.05 * (k // 2)
-        knob(
-            b,
-            f"peg_{k}",
-            parent="body",
-            at=p(s * 0.045, y, 0.03),
-            radius=0.01 * size,
-            high=0.03 * size,
-            out=s * X,
-            material="metal",
-        )
+        knob(b, f"peg_{k}", "body", p(s * 0.045, y, 0.03), 0.01 * size, s * X, high=0.03 * size, material="metal")
 
 
-@kind("bass drum", words="drum, kick drum", radius=length(0.22, 0.32))
+@kind(words="drum, kick drum", radius=(0.22, 0.32))
 def bass_drum(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -483,10 +398,9 @@ def bass_drum(b: ObjectBuilder, radius: float) -> None:
         b.cylinder(r, (0, -0.2, r + 0.02), (0, 0.2, r + 0.02)),
         [b.torus(r, 0.015, (0, y, r + 0.02), Y) for y in (-0.19, 0.19)],
         [beam(0.015, 0.015, (s * 0.9 * r, -0.1, 0.8 * r), (s * 1.3 * r, -0.15, 0.008), X) for s in (-1, 1)],
-        box((-0.05, 0.19, 0), (0.05, 0.5, 0.015)),
+        slab(0.05, (0.19, 0.5), (0, 0.015)),
         [box((s * 0.045, 0.27, 0.01), (s * 0.037, 0.3, 0.25)) for s in (-1, 1)],
-        material="wood",
-        color="red",
+        look="red wood",
     )
     b.cut("drum", b.cylinder(r - 0.01, (0, -0.19, r + 0.02), (0, 0.19, r + 0.02)))
     b.bore("drum", b.cylinder(0.007, (-1, 0.285, 0.235), (1, 0.285, 0.235)))
@@ -495,15 +409,14 @@ def bass_drum(b: ObjectBuilder, radius: float) -> None:
         b.cylinder(0.005, (-0.044, 0.285, 0.235), (0.044, 0.285, 0.235)),
         beam(0.008, 0.008, (0, 0.285, 0.23), (0, 0.33, 0.36), X),
         ball(0.025, (0, 0.33, 0.37)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("beater", parent="drum", axis=X, pivot=(0, 0.285, 0.235), upper=0.15, lower=-0.5)
-    b.part("pedal", beam(0.06, 0.008, (0, 0.49, 0.025), (0, 0.33, 0.1)), material="steel")
-    b.hinge("pedal", parent="drum", axis=-X, pivot=(0, 0.49, 0.025), upper=0.1, lower=-0.25)
+    b.hinge("beater", "drum", X, (0, 0.285, 0.235), 0.15, lower=-0.5)
+    b.part("pedal", beam(0.06, 0.008, (0, 0.49, 0.025), (0, 0.33, 0.1)), look="steel")
+    b.hinge("pedal", "drum", -X, (0, 0.49, 0.025), 0.1, lower=-0.25)
 
 
 @kind(
-    "synthesizer",
     words="electronic keyboard, keytar, midi keyboard, music keyboard, digital piano, electric piano, stage piano",
     number=whole(7, 12, words="key"),
 )
@@ -513,44 +426,28 @@ def synthesizer(b: ObjectBuilder, number: int) -> None:
         "case",
         box((-w - 0.06, 0, 0), (w + 0.02, 0.25, 0.04)),
         box((-w - 0.06, 0.14, 0.03), (w + 0.02, 0.25, 0.07)),
-        color="black",
+        look="black",
     )
-    b.cut("case", box((-w - 0.002, -0.01, 0.02), (w + 0.002, 0.142, 0.1)))
+    b.cut("case", slab(w + 0.002, (-0.01, 0.142), (0.02, 0.1)))
     for k in range(number):
         x = -w + 0.024 * k
-        b.part(f"key_{k}", box((x + 0.0008, 0, 0.036), (x + 0.0232, 0.139, 0.05)), color="white")
-        b.hinge(f"key_{k}", parent="case", axis=X, pivot=(0, 0.139, 0.036), upper=0.06)
+        b.part(f"key_{k}", box((x + 0.0008, 0, 0.036), (x + 0.0232, 0.139, 0.05)), look="white")
+        b.hinge(f"key_{k}", "case", X, (0, 0.139, 0.036), 0.06)
     for k, x in enumerate(spread(4, -w, w)):
-        knob(b, f"knob_{k}", parent="case", at=(x, 0.2, 0.07), radius=0.01, high=0.014, out=Z, reach=4.7)
+        knob(b, f"knob_{k}", "case", (x, 0.2, 0.07), 0.01, Z, high=0.014, reach=4.7)
 
 
-@kind("castanets", words="castanet", radius=length(0.03, 0.05))
+@kind(words="castanet", radius=(0.03, 0.05))
 def castanets(b: ObjectBuilder, radius: float) -> None:
     r = radius
-    b.part(
-        "shell",
-        ball(r, (0, 0, 0)),
-        box((-0.2 * r, r * 0.8, -0.3 * r), (0.2 * r, 1.2 * r, -0.05 * r)),
-        material="wood",
-        color="brown",
-    )
-    b.cut("shell", box((-2 * r, -2 * r, -0.02 * r), (2 * r, 2 * r, 2 * r)), ball(0.75 * r, (0, 0, 0.2 * r)))
-    b.part(
-        "other_shell",
-        ball(r, (0, 0, 0)),
-        box((-0.2 * r, r * 0.8, 0.05 * r), (0.2 * r, 1.2 * r, 0.3 * r)),
-        material="wood",
-        color="brown",
-    )
-    b.cut("other_shell", box((-2 * r, -2 * r, -2 * r), (2 * r, 2 * r, 0.02 * r)), ball(0.75 * r, (0, 0, -0.2 * r)))
-    b.hinge("other_shell", parent="shell", axis=-X, pivot=(0, 1.2 * r, 0), upper=0.6)
+    b.part("shell", ball(r, (0, 0, 0)), slab(0.2 * r, (r * 0.8, 1.2 * r), (-0.3 * r, -0.05 * r)), look="brown wood")
+    b.cut("shell", slab(2 * r, 2 * r, (-0.02 * r, 2 * r)), ball(0.75 * r, (0, 0, 0.2 * r)))
+    b.part("other_shell", ball(r, (0, 0, 0)), slab(0.2 * r, (r * 0.8, 1.2 * r), (0.05 * r, 0.3 * r)), look="brown wood")
+    b.cut("other_shell", slab(2 * r, 2 * r, (-2 * r, 0.02 * r)), ball(0.75 * r, (0, 0, -0.2 * r)))
+    b.hinge("other_shell", "shell", -X, (0, 1.2 * r, 0), 0.6)
 
 
-@kind(
-    "nodding dog",
-    words="bobblehead, bobble head, nodding toy, wobbly toy",
-    size=length(0.8, 1.3),
-)
+@kind("nodding dog", words="bobblehead, bobble head, nodding toy, wobbly toy", size=(0.8, 1.3))
 def bobblehead(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -558,27 +455,27 @@ def bobblehead(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.04 * size, p(0, 0, 0), p(0, 0, 0.01)),
         b.cone(0.03 * size, 0.018 * size, p(0, 0, 0.01), p(0, 0, 0.08)),
         [box(p(s * 0.009, -0.005, 0.075), p(s * 0.013, 0.005, 0.1)) for s in (-1, 1)],
-        color="blue",
+        look="blue",
     )
     b.part(
         "head",
         ball(0.03 * size, p(0, 0, 0.125)),
         box(p(-0.0075, -0.005, 0.085), p(0.0075, 0.005, 0.1)),
         b.cone(0.006 * size, 0.003 * size, p(0, -0.028, 0.122), p(0, -0.042, 0.12)),
-        color="pink",
+        look="pink",
     )
     b.cut("head", [box(p(s * 0.008, -0.02, 0), p(s * 0.03, 0.02, 0.103)) for s in (-1, 1)])
-    b.hinge("head", parent="body", axis=X, pivot=p(0, 0, 0.092), upper=0.12, lower=-0.12)
+    b.hinge("head", "body", X, p(0, 0, 0.092), 0.12, lower=-0.12)
 
 
-@kind("gymnast toy", words="acrobat toy, high bar toy", size=length(0.8, 1.4))
+@kind("gymnast toy", words="acrobat toy, high bar toy", size=(0.8, 1.4))
 def acrobat_toy(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "frame",
         box(p(-0.09, -0.05, 0), p(0.09, 0.05, 0.015)),
         [box(p(s * 0.08, -0.01, 0.01), p(s * 0.07, 0.01, 0.26)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     b.bore("frame", b.cylinder(0.0055 * size, p(-1, 0, 0.24), p(1, 0, 0.24)))
     b.part(
@@ -588,71 +485,55 @@ def acrobat_toy(b: ObjectBuilder, size: float) -> None:
         box(p(-0.025, -0.012, 0.12), p(0.025, 0.012, 0.18)),
         ball(0.018 * size, p(0, 0, 0.195)),
         [b.rod(0.008 * size, p(s * 0.014, 0, 0.12), p(s * 0.014, 0, 0.06)) for s in (-1, 1)],
-        material="wood",
-        color="red",
+        look="red wood",
     )
-    b.spin("figure", parent="frame", axis=X, pivot=p(0, 0, 0.24))
+    b.spin("figure", "frame", X, p(0, 0, 0.24))
 
 
-@kind(
-    "claw machine",
-    words="crane game, claw crane game, grabber machine",
-    width=length(0.6, 0.9),
-)
+@kind(words="crane game, claw crane game, grabber machine", width=(0.6, 0.9))
 def claw_machine(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "cabinet",
-        box((-w, -w, 0), (w, w, 0.8)),
-        box((-w, -w, 1.7), (w, w, 1.8)),
+        slab(w, w, (0, 0.8)),
+        slab(w, w, (1.7, 1.8)),
         [
             box((x - 0.02, y - 0.02, 0.79), (x + 0.02, y + 0.02, 1.71))
             for x in (-w + 0.02, w - 0.02)
             for y in (-w + 0.02, w - 0.02)
         ],
-        [box((-w + 0.02, s * (w - 0.06), 1.62), (w - 0.02, s * (w - 0.02), 1.66)) for s in (-1, 1)],
-        box((-0.15, -w - 0.12, 0.74), (0.15, -w + 0.01, 0.79)),
-        material="wood",
-        color="pink",
+        [slab(w - 0.02, (s * (w - 0.06), s * (w - 0.02)), (1.62, 1.66)) for s in (-1, 1)],
+        slab(0.15, (-w - 0.12, -w + 0.01), (0.74, 0.79)),
+        look="pink wood",
     )
-    b.cut("cabinet", box((-w + 0.03, -w + 0.03, 0.05), (w - 0.03, w - 0.03, 0.77)))
-    b.part("bridge", box((-0.03, -w + 0.025, 1.661), (0.03, w - 0.025, 1.69)), material="steel")
-    b.slide("bridge", parent="cabinet", axis=X, upper=w - 0.1, lower=-w + 0.1)
+    b.cut("cabinet", slab(w - 0.03, w - 0.03, (0.05, 0.77)))
+    b.part("bridge", slab(0.03, w - 0.025, (1.661, 1.69)), look="steel")
+    b.slide("bridge", "cabinet", X, w - 0.1, lower=-w + 0.1)
     b.part(
         "carriage",
-        box((-0.06, -0.05, 1.6), (0.06, 0.05, 1.655)),
-        [box((s * 0.035, -0.05, 1.65), (s * 0.045, 0.05, 1.695)) for s in (-1, 1)],
-        box((-0.045, -0.05, 1.692), (0.045, 0.05, 1.699)),
-        material="steel",
+        slab(0.06, 0.05, (1.6, 1.655)),
+        [slab((s * 0.035, s * 0.045), 0.05, (1.65, 1.695)) for s in (-1, 1)],
+        slab(0.045, 0.05, (1.692, 1.699)),
+        look="steel",
     )
-    b.slide("carriage", parent="bridge", axis=Y, upper=w - 0.13, lower=-w + 0.13)
-    b.part(
-        "claw",
-        b.cylinder(0.01, (0, 0, 1.35), (0, 0, 1.597)),
-        b.cylinder(0.035, (0, 0, 1.33), (0, 0, 1.36)),
-        material="chrome",
-    )
-    b.slide("claw", parent="carriage", axis=-Z, upper=0.3)
-    knob(b, "button", parent="cabinet", at=(0.08, -w - 0.06, 0.79), radius=0.03, high=0.02, out=Z)
+    b.slide("carriage", "bridge", Y, w - 0.13, lower=-w + 0.13)
+    b.part("claw", b.cylinder(0.01, 1.35, 1.597), b.cylinder(0.035, 1.33, 1.36), look="chrome")
+    b.slide("claw", "carriage", -Z, 0.3)
+    knob(b, "button", "cabinet", (0.08, -w - 0.06, 0.79), 0.03, Z, high=0.02)
 
 
-@kind(
-    "spyglass",
-    words="monocular, pirate telescope, hand telescope",
-    length=length(0.12, 0.25),
-    radius=length(0.015, 0.03),
-)
+@kind(words="monocular, pirate telescope, hand telescope", length=(0.12, 0.25), radius=(0.015, 0.03))
 def spyglass(b: ObjectBuilder, length: float, radius: float) -> None:
     b.part(
         "barrel",
         b.tube(radius, radius - 0.003, (0, 0, 0), (0, length, 0)),
         b.cylinder(radius, (0, 0, 0), (0, 0.004, 0)),
-        material="brass",
+        look="brass",
     )
     b.part(
         "tube",
         b.tube(radius - 0.0045, radius - 0.007, (0, 0.2 * length, 0), (0, 1.2 * length, 0)),
         b.tube(radius, radius - 0.007, (0, 1.15 * length, 0), (0, 1.22 * length, 0)),
-        material="brass",
+        look="brass",
     )
-    b.slide("tube", parent="barrel", axis=Y, upper=0.7 * length, lower=-0.05 * length)
+    b.slide("tube", "barrel", Y, 0.7 * length, lower=-0.05 * length)

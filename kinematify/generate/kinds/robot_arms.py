@@ -9,7 +9,7 @@ import numpy as np
 from kinematify.generate.kinds.limbs import finger_palm, fingered, jaw_rail, jaws
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
-from kinematify.generate.procedural.solids import box, cylinder, hull, off, union, vector
+from kinematify.generate.procedural.solids import box, cylinder, hull, off, slab, union, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.procedural.workshop import Workshop
@@ -54,8 +54,8 @@ def serial_arm(
     side = 1.0
     w.body(
         parent,
-        box((-3 * radius, -2 * radius, 0), (2 * radius, 2 * radius, 0.02)),
-        cylinder(radius, (0, 0, 0.01), (0, 0, 0.02 + 1.1 * radius)),
+        slab((-3 * radius, 2 * radius), 2 * radius, (0, 0.02)),
+        cylinder(radius, 0.01, 0.02 + 1.1 * radius),
     )
     tip = vector(0.0, 0.0, 0.02 + radius)
     for k in range(joints):
@@ -74,7 +74,7 @@ def serial_arm(
         end = off(tip, 0, 0, max(reach, 2.5 * radius))
         w.body(name, solids, cylinder(0.75 * radius, tip, end))
         limits = (-2.8, 2.8) if upright else (-1.7, 1.7)
-        w.turns(name, parent=parent, axis=(0, 0, 1) if upright else (0, 1, 0), pivot=pivot, limits=limits)
+        w.turns(name, parent, (0, 0, 1) if upright else (0, 1, 0), pivot, limits)
         tip = end
         parent = name
     w.add(parent, box(tip - 0.8 * radius, off(tip, 1.2 * radius, 0.8 * radius, 0.2 * radius)))
@@ -91,7 +91,6 @@ def serial_arm(
 
 
 @kind(
-    "scara",
     words="scara robot, scara arm",
     title="SCARA robot",
     material="metal",
@@ -106,7 +105,7 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
     thick = 0.05
     pivot = (0.0, 0.0, height)
     boss, hole, rotor = stub(pivot, (0, 0, 1), size, clearance)
-    w.body("column", box((-0.12, -0.12, 0), (0.12, 0.12, 0.03)), cylinder(size, (0, 0, 0.02), (0, 0, height)), boss)
+    w.body("column", slab(0.12, 0.12, (0, 0.03)), cylinder(size, 0.02, height), boss)
     w.cut("column", hole)
     low = height + clearance
     elbow = (upper_arm, 0.0, low + thick)
@@ -114,7 +113,7 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
     beam = hull(*[cylinder(size, (x, 0, low), (x, 0, low + thick)) for x in (0.0, upper_arm)])
     w.body("upper_arm", rotor, beam, boss)
     w.cut("upper_arm", hole)
-    w.turns("upper_arm", parent="column", axis=(0, 0, 1), pivot=pivot, limits=(-2.2, 2.2))
+    w.turns("upper_arm", "column", (0, 0, 1), pivot, (-2.2, 2.2))
     start = elbow[2] + clearance
     half = 0.016
     x = upper_arm + forearm
@@ -122,26 +121,25 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
     arm = hull(*[cylinder(size, (at, 0, start), (at, 0, start + thick)) for at in (upper_arm, x)])
     head = cylinder(0.7 * size, (x, 0, start - 0.02), (x, 0, start + thick + 0.06))
     w.body("forearm", second, arm, head)
-    w.cut("forearm", box((x - its_room, -its_room, start - 1), (x + its_room, its_room, start + 1)))
-    w.turns("forearm", parent="upper_arm", axis=(0, 0, 1), pivot=elbow, limits=(-2.0, 2.0))
+    w.cut("forearm", slab((x - its_room, x + its_room), its_room, (start - 1, start + 1)))
+    w.turns("forearm", "upper_arm", (0, 0, 1), elbow, (-2.0, 2.0))
     bottom = start - 0.06
     top = start + thick + 0.09 + stroke
-    spindle = box((x - half, -half, bottom), (x + half, half, top))
+    spindle = slab((x - half, x + half), half, (bottom, top))
     cap = cylinder(0.03, (x, 0, top - 0.001), (x, 0, top + 0.01))
     tip = (x, 0.0, bottom)
     _unused, hole, tool = stub(tip, (0, 0, -1), 0.024, clearance)
     collar = cylinder(0.024, (x, 0, bottom), (x, 0, bottom + 0.03))
     w.body("spindle", spindle, cap, collar)
     w.cut("spindle", hole)
-    w.slides("spindle", parent="forearm", axis=(0, 0, -1), pivot=tip, limits=(0.0, stroke))
-    plate = box((x - 0.03, -0.02, bottom - 0.05), (x + 0.045, 0.02, bottom - 0.022))
+    w.slides("spindle", "forearm", (0, 0, -1), tip, (0.0, stroke))
+    plate = slab((x - 0.03, x + 0.045), 0.02, (bottom - 0.05, bottom - 0.022))
     w.body("tool", union(tool, plate))
-    w.turns("tool", parent="spindle", axis=(0, 0, 1), pivot=tip, limits=(-3.1, 3.1))
+    w.turns("tool", "spindle", (0, 0, 1), tip, (-3.1, 3.1))
     w.settle()
 
 
 @kind(
-    "gantry",
     words=(
         "three axis gantry, gantry robot, cartesian robot, cnc machine, milling machine, cnc router, laser cutter, "
         "laser engraver, pick and place machine, pen plotter, gantry crane, overhead crane"
@@ -158,46 +156,45 @@ def gantry(w: Workshop, width: float, depth: float, height: float, clearance: fl
     bar = 0.02
     tall = 0.06
     inner = bar + clearance
-    bed = [box((-0.5 * width, -0.5 * depth, 0), (0.5 * width, 0.5 * depth, 0.05))]
+    bed = [slab(0.5 * width, 0.5 * depth, (0, 0.05))]
     rails = [sign * (0.5 * width - 2 * bar) for sign in (-1, 1)]
     for x in rails:
-        bed = [*bed, box((x - bar, -0.5 * depth, 0.04), (x + bar, 0.5 * depth, 0.05 + tall))]
+        bed = [*bed, slab((x - bar, x + bar), 0.5 * depth, (0.04, 0.05 + tall))]
         for y0, y1 in ((-0.5 * depth, -0.5 * depth + 0.02), (0.5 * depth - 0.02, 0.5 * depth)):
             bed = [*bed, box((x - 1.5 * bar, y0, 0.04), (x + 1.5 * bar, y1, 0.07 + tall))]
     w.body("bed", bed)
     foot = 0.12
     top = height
     shoes = [
-        box((x - 2 * bar, -0.5 * foot, 0.05 + clearance), (x + 2 * bar, 0.5 * foot, 0.05 + tall + 0.04))
-        - box((x - inner, -1, 0), (x + inner, 1, 0.05 + tall + clearance))
+        slab((x - 2 * bar, x + 2 * bar), 0.5 * foot, (0.05 + clearance, 0.05 + tall + 0.04))
+        - slab((x - inner, x + inner), 1, (0, 0.05 + tall + clearance))
         for x in rails
     ]
-    posts = [box((x - bar, -0.03, 0.05 + tall + 0.03), (x + bar, 0.03, top)) for x in rails]
-    beam = box((rails[0], -bar, top - 2 * bar), (rails[1], bar, top))
+    posts = [slab((x - bar, x + bar), 0.03, (0.05 + tall + 0.03, top)) for x in rails]
+    beam = slab((rails[0], rails[1]), bar, (top - 2 * bar, top))
     w.body("bridge", shoes, posts, beam)
     travel = depth - 0.04 - foot - 0.002
-    w.slides("bridge", parent="bed", axis=(0, 1, 0), pivot=(0, 0, 0.1), limits=(-0.5 * travel, 0.5 * travel))
+    w.slides("bridge", "bed", (0, 1, 0), (0, 0, 0.1), (-0.5 * travel, 0.5 * travel))
     half = 0.07
-    carriage = box((-half, -0.06, top - 2 * bar - 0.03), (half, 0.06, top + 0.03))
-    carriage = carriage - box((-1, -inner, top - 2 * bar - clearance), (1, inner, top + clearance))
+    carriage = slab(half, 0.06, (top - 2 * bar - 0.03, top + 0.03))
+    carriage = carriage - slab(1, inner, (top - 2 * bar - clearance, top + clearance))
     its_room = 0.015 + clearance
-    tower = box((-0.04, -0.13, top - 2 * bar - 0.03), (0.04, -0.05, top + 0.03))
-    tower = tower - box((-its_room, -0.09 - its_room, 0), (its_room, -0.09 + its_room, 2 * height))
+    tower = slab(0.04, (-0.13, -0.05), (top - 2 * bar - 0.03, top + 0.03))
+    tower = tower - slab(its_room, (-0.09 - its_room, -0.09 + its_room), (0, 2 * height))
     w.body("carriage", union(carriage, tower))
     reach = 0.5 * (rails[1] - rails[0]) - bar - half - 0.002
-    w.slides("carriage", parent="bridge", axis=(1, 0, 0), pivot=(0, 0, top), limits=(-reach, reach))
+    w.slides("carriage", "bridge", (1, 0, 0), (0, 0, top), (-reach, reach))
     low = top - 2 * bar - 0.08
     stroke = low - 0.12
-    ram = box((-0.015, -0.105, low), (0.015, -0.075, top + 0.08 + stroke))
-    cap = box((-0.03, -0.12, top + 0.08 + stroke - 0.001), (0.03, -0.06, top + 0.1 + stroke))
+    ram = slab(0.015, (-0.105, -0.075), (low, top + 0.08 + stroke))
+    cap = slab(0.03, (-0.12, -0.06), (top + 0.08 + stroke - 0.001, top + 0.1 + stroke))
     tool = cylinder(0.02, (0, -0.09, low - 0.03), (0, -0.09, low + 0.001))
     w.body("ram", ram, cap, tool)
-    w.slides("ram", parent="carriage", axis=(0, 0, -1), pivot=(0, -0.09, low), limits=(0.0, stroke))
+    w.slides("ram", "carriage", (0, 0, -1), (0, -0.09, low), (0.0, stroke))
     w.settle()
 
 
 @kind(
-    "gripper",
     words="parallel gripper, parallel jaw gripper, claw, robot gripper, grasper",
     material="metal",
     fingers=whole(2, 6, default=2, usual=(2, 4), help="Two are parallel jaws.", words="finger, jaw"),
@@ -217,7 +214,6 @@ def gripper(w: Workshop, fingers: int, width: float, finger: float, open: float,
 
 
 @kind(
-    "hand",
     words=(
         "robot hand, robotic hand, dexterous hand, humanoid hand, prosthetic hand, anthropomorphic hand, hand "
         "prosthesis, bionic hand"
@@ -242,8 +238,8 @@ def hand(
     level = 0.09
     w.body(
         "palm",
-        box((-half, -radius, 0), (half, radius, level - 2 * radius)),
-        cylinder(1.5 * radius, (0, 0, -0.04), (0, 0, 0.01)),
+        slab(half, radius, (0, level - 2 * radius)),
+        cylinder(1.5 * radius, -0.04, 0.01),
     )
     for finger in range(fingers):
         x = (finger - 0.5 * (fingers - 1)) * pitch
@@ -257,14 +253,11 @@ def hand(
             top = z + length - (2 * radius if k + 1 < joints else radius)
             solids = [
                 tongue,
-                box(
-                    (x - 0.5 * finger_width, -radius, z + fork_room(radius, tight)),
-                    (x + 0.5 * finger_width, radius, top),
-                ),
+                slab((x - 0.5 * finger_width, x + 0.5 * finger_width), radius, (z + fork_room(radius, tight), top)),
             ]
             if k + 1 == joints:
                 solids = [*solids, cylinder(radius, (x - 0.5 * finger_width, 0, top), (x + 0.5 * finger_width, 0, top))]
             w.body(name, solids)
-            w.turns(name, parent=parent, axis=(1, 0, 0), pivot=(x, 0, z), limits=(0.0, 1.5), rest=open)
+            w.turns(name, parent, (1, 0, 0), (x, 0, z), (0.0, 1.5), rest=open)
             parent, z = (name, z + length)
     w.settle()

@@ -15,7 +15,7 @@ from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.layout import parse_layout, stacked
 from kinematify.generate.procedural.pieces.bearing_pieces import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
-from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, slab, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,7 +54,6 @@ def drawer_stacks(text: str) -> list[int]:
 
 
 @kind(
-    "cabinet",
     words=(
         "cupboard, wardrobe, closet, chest, chest of drawers, dresser, sideboard, nightstand, bedside table, drawer "
         "unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, wall unit, tv stand, tv "
@@ -295,22 +294,13 @@ def cabinet(
         if cell.kind == "door":
             side = side_of(cells, cell)
             outermost = cell.left == 0.0 if side == "left" else cell.right > 1.0 - 1e-09
-            add_door(
-                w,
-                name,
-                parent="body",
-                opening=opening,
-                fitting=fitting,
-                side=side,
-                hinge=hinge if outermost else "edge",
-            )
+            add_door(w, name, "body", opening, fitting, side=side, hinge=hinge if outermost else "edge")
         elif cell.kind == "drawer":
-            add_drawer(w, name, parent="body", opening=opening, fitting=fitting)
+            add_drawer(w, name, "body", opening, fitting)
     w.settle()
 
 
 @kind(
-    "table",
     words=(
         "desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, writing table, "
         "school table, reading desk, entrance table, counter, work table, dining table, lab bench, cocktail table, "
@@ -425,20 +415,19 @@ def table(
     stacks = stacks_of(half, under)
     openings = [opening_of(span, back) for stack in stacks for span in stack]
     its_body = union(
-        box((-0.5 * width, -overhang, under), (0.5 * width, depth - overhang, height)),
+        slab(0.5 * width, (-overhang, depth - overhang), (under, height)),
         *[box((stack[0][0], 0, stack[-1][2]), (stack[0][1], back, under)) for stack in stacks],
-        box((-half, back - 0.02, under - 0.08), (half, back, under)),
+        slab(half, (back - 0.02, back), (under - 0.08, under)),
         *[leg_of(x, y, under) for x in (-half, half - leg) for y in (0.0, back - leg)],
     )
     w.body("body", its_body - union(*[room(opening) for opening in openings]))
     fitting = Fitting(clearance=clearance, grip=handle, rest=open)
     for k, opening in enumerate(openings):
-        add_drawer(w, f"drawer_{k + 1}", parent="body", opening=opening, fitting=fitting)
+        add_drawer(w, f"drawer_{k + 1}", "body", opening, fitting)
     w.settle()
 
 
 @kind(
-    "folding chair",
     words=(
         "foldable chair, camping chair, collapsible chair, garden chair, deck chair, beach chair, lawn chair, "
         "patio chair, director chair, fishing chair, garden deck chair, picnic chair, folding stool, folding "
@@ -476,7 +465,7 @@ def folding_chair(
     # An upright bar between two x, about the plane y = 0.
     def between(one: float, other: float, thick: float, low: float, high: float) -> Manifold:
         x0, x1 = sorted((one, other))
-        return box((x0, -thick, low), (x1, thick, high))
+        return slab((x0, x1), thick, (low, high))
 
     # Half the width of what moves between the sides [m].
     inner = 0.5 * width - rail - clearance
@@ -488,7 +477,7 @@ def folding_chair(
         end = 0.5 * width - 0.35 * rail
         w.cut("frame", bore(pin, clearance, (-end - clearance, 0, level), (end + clearance, 0, level)))
         w.body(f"{name}", solids, cylinder(pin, (-end, 0, level), (end, 0, level)))
-        w.turns(f"{name}", parent="frame", axis=(1, 0, 0), pivot=(0, 0, level), limits=(0.0, opens), rest=open)
+        w.turns(f"{name}", "frame", (1, 0, 0), (0, 0, level), (0.0, opens), rest=open)
 
     half = 0.5 * width
     thick = 0.5 * rail
@@ -498,8 +487,8 @@ def folding_chair(
     its_slats: list[Manifold] = []
     for k in range(slats):
         low = height - (k + 1) * pitch
-        its_slats = [*its_slats, box((-wide, thick - 0.001, low + 0.15 * pitch), (wide, thick + board, low + pitch))]
-    tie = box((-wide, -thick - board, 0.1), (wide, 0.001 - thick, 0.13))
+        its_slats = [*its_slats, slab(wide, (thick - 0.001, thick + board), (low + 0.15 * pitch, low + pitch))]
+    tie = slab(wide, (-thick - board, 0.001 - thick), (0.1, 0.13))
     w.body("frame", sides, its_slats, tie)
     # Rear legs between the sides of the frame; they swing back.
     thick_2 = the_half
@@ -522,7 +511,6 @@ def folding_chair(
 
 
 @kind(
-    "office chair",
     words=(
         "swivel chair, desk chair, computer chair, chair, task chair, gaming chair, drafting chair, "
         "conference chair, executive chair, student chair, revolving chair, spinning chair"
@@ -571,12 +559,12 @@ def office_chair(
         travel = min(0.1, 0.5 * column)
         w.cut("base", bore(the_spring, clearance, (0, 0, level + 0.01), (0, 0, rim + 0.1), segments=sides))
         boss, hole, rotor = stub((0, 0, top + 0.022), (0, 0, 1), 0.032, clearance, length=0.022)
-        rod_ = cylinder(the_spring, (0, 0, level + 0.014), (0, 0, top + 0.001), segments=sides)
+        rod_ = cylinder(the_spring, level + 0.014, top + 0.001, segments=sides)
         w.body("lift", rod_, boss, material="steel")
         w.cut("lift", hole)
-        w.slides("lift", parent="base", axis=(0, 0, 1), pivot=(0, 0, rim), limits=(0.0, travel), rest=open)
+        w.slides("lift", "base", (0, 0, 1), (0, 0, rim), (0.0, travel), rest=open)
         w.body("seat", rotor)
-        w.turns("seat", parent="lift", axis=(0, 0, 1), pivot=(0, 0, top + 0.022))
+        w.turns("seat", "lift", (0, 0, 1), (0, 0, top + 0.022))
         return top + 0.044 + clearance
 
     # A bow beside the cushion with a pad on it.
@@ -594,8 +582,8 @@ def office_chair(
 
     level = wheel / 0.38
     its_column = level + column
-    hub = cylinder(0.04, (0, 0, level - 0.005), (0, 0, level + 0.05))
-    w.body("base", hub, cylinder(the_column, (0, 0, level), (0, 0, its_column)))
+    hub = cylinder(0.04, level - 0.005, level + 0.05)
+    w.body("base", hub, cylinder(the_column, level, its_column))
     for k in range(castors):
         # An arm of the star; under its end a fork on a stem that turns, and in the fork a wheel.
         number = k + 1
@@ -606,28 +594,26 @@ def office_chair(
         place = at(turn @ (0.0, -star, 0.0), turn)
         arm = hull(
             cylinder(0.022, (0, star, level), (0, star, level + 0.045), segments=24),
-            cylinder(0.016, (0, 0, level), (0, 0, level + 0.03), segments=24),
+            cylinder(0.016, level, level + 0.03, segments=24),
         )
         w.add("base", arm.transform(place))
         seen = w.from_frame(place)
         with drawn_on(seen, clearance) as b:
-            caster(
-                b, f"wheel_{number}", fork=f"castor_{number}", parent="base", top=(0, 0, level), high=level, deep=0.022
-            )
+            caster(b, f"wheel_{number}", "base", (0, 0, level), level, fork=f"castor_{number}", deep=0.022)
     # A cushion on a plate, and behind it a bracket with the backrest.
     level_2 = spring(level, its_column)
     behind = 0.5 * depth + 0.05
     places = [(sx * (0.5 * width - 0.05), sy * (0.5 * depth - 0.05)) for sx in (-1, 1) for sy in (-1, 1)]
     cushion = [cylinder(0.05, (*xy, level_2 + 0.02), (*xy, level_2 + seat), segments=24) for xy in places]
-    plate = box((-0.1, -0.12, level_2 - 0.01), (0.1, 0.12, level_2 + 0.021))
-    bracket = box((-0.03, 0.1, level_2 - 0.01), (0.03, behind + the_fork[1], level_2 + 0.012))
+    plate = slab(0.1, 0.12, (level_2 - 0.01, level_2 + 0.021))
+    bracket = slab(0.03, (0.1, behind + the_fork[1]), (level_2 - 0.01, level_2 + 0.012))
     pivot = (0.0, behind, level_2 + 0.012 + 2.0 * the_fork[1])
     forked, tongue = bent_fork(pivot, (0.0, 0.0), the_fork[0], the_fork[1], clearance)
     w.add("seat", plate, bracket, forked, hull(*cushion))
     if armrests == "armrests":
         w.add("seat", [solid for s in (-1, 1) for solid in armrest(s * (0.5 * width + 0.02), level_2)])
     low = level_2 + seat + 0.05
-    rail = box((-0.025, behind - 0.01, pivot[2] + 0.02), (0.025, behind + 0.01, low + 0.5 * back))
+    rail = slab(0.025, (behind - 0.01, behind + 0.01), (pivot[2] + 0.02, low + 0.5 * back))
     wide = 0.5 * width - 0.05
     rest = [
         rod(0.02, (s * wide, behind - 0.015, z), (0.6 * s * wide, behind + 0.002, z))
@@ -635,5 +621,5 @@ def office_chair(
         for z in (low + 0.02, low + back - 0.02)
     ]
     w.body("back", tongue, rail, hull(*rest))
-    w.turns("back", parent="seat", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, 0.45), rest=open)
+    w.turns("back", "seat", (-1, 0, 0), pivot, (0.0, 0.45), rest=open)
     w.settle()

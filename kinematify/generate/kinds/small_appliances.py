@@ -15,7 +15,7 @@ from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.pieces.bearing_pieces import FRONT, BackEdge, add_barrels, at, bent_fork, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, room
-from kinematify.generate.procedural.solids import SEGMENTS, Y, Z, ball, box, cylinder, hull, rod, union, vector
+from kinematify.generate.procedural.solids import SEGMENTS, Y, Z, ball, box, cylinder, hull, rod, slab, union, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "toaster",
     walls=8,
     words="bread toaster, pop up toaster, retro toaster, toy toaster",
     material="metal",
@@ -94,7 +93,7 @@ def toaster(
         its_knob = box((middle - grip, -0.028, level - 0.004), (middle + grip, -0.01, level + 0.009))
         w.cut("body", union(*rooms))
         w.body(name, bridge, stem, its_knob, plates)
-        w.slides(name, parent="body", axis=(0, 0, -1), pivot=(middle, 0, level), limits=(0.0, level - low), rest=open)
+        w.slides(name, "body", (0, 0, -1), (middle, 0, level), (0.0, level - low), rest=open)
         if knob == "knob":
             with drawn_on(w, clearance, open) as b:
                 mechanisms.knob(
@@ -111,21 +110,20 @@ def toaster(
         # A flat tray for crumbs that comes out behind.
         half_2 = 0.5 * width - 0.03
         front = 0.04
-        w.cut("body", box((-half_2, front, 0.008), (half_2, depth + 1.0, 0.024)))
+        w.cut("body", slab(half_2, (front, depth + 1.0), (0.008, 0.024)))
         gap_2 = clearance
         outer = box((gap_2 - half_2, front + gap_2, 0.008 + gap_2), (half_2 - gap_2, depth - 0.002, 0.024 - gap_2))
         inner = box(
             (gap_2 + 0.003 - half_2, front + gap_2 + 0.003, 0.011 + gap_2), (half_2 - gap_2 - 0.003, depth - 0.006, 1.0)
         )
-        lip = box((-0.2 * half_2, depth - 0.003, 0.012), (0.2 * half_2, depth + 0.014, 0.02))
+        lip = slab(0.2 * half_2, (depth - 0.003, depth + 0.014), (0.012, 0.02))
         w.body("tray", outer - inner, lip, material="metal")
         travel = 0.7 * (depth - front)
-        w.slides("tray", parent="body", axis=(0, 1, 0), pivot=(0, depth, 0.016), limits=(0.0, travel), rest=open)
+        w.slides("tray", "body", (0, 1, 0), (0, depth, 0.016), (0.0, travel), rest=open)
     w.settle()
 
 
 @kind(
-    "coffee machine",
     words=(
         "coffee maker, espresso machine, coffeemaker, coffee brewer, espresso maker, filter coffee machine, drip "
         "coffee maker, coffee brewing machine"
@@ -170,9 +168,9 @@ def coffee_machine(
     top = height - the_lid
     w.body(
         "body",
-        box((-half, 0, 0), (half, depth, base)),
-        box((-half, column, 0), (half, depth, top)),
-        box((-half, 0, head), (half, depth, top)),
+        slab(half, (0, depth), (0, base)),
+        slab(half, (column, depth), (0, top)),
+        slab(half, (0, depth), (head, top)),
     )
     # A lid over the water tank, hinged behind.
     half_2 = 0.5 * width
@@ -180,16 +178,16 @@ def coffee_machine(
     front = 0.6 * depth
     below = level - clearance
     tank = box((wall - half_2, front + wall, base + wall), (half_2 - wall, depth - wall, height + 1.0))
-    above = box((-half_2 - 1.0, -1.0, below), (half_2 + 1.0, depth + 1.0, height + 1.0))
+    above = slab(half_2 + 1.0, (-1.0, depth + 1.0), (below, height + 1.0))
     w.cut("body", tank, above)
-    lid = box((-half_2, front, level), (half_2, depth, height))
-    grip = box((-0.1 * width, front - 0.008, level + 0.003), (0.1 * width, front + 0.01, height))
+    lid = slab(half_2, (front, depth), (level, height))
+    grip = slab(0.1 * width, (front - 0.008, front + 0.01), (level + 0.003, height))
     w.body("lid", lid, grip)
     edge = BackEdge(y=depth, level=level, below=0.1, above=the_lid, clearance=clearance)
     pivot = add_barrels(
         w, "lid", parent="body", edge=edge, places=(-0.3 * width, 0.3 * width), length=0.04, radius=the_hinge
     )
-    w.turns("lid", parent="body", axis=(-1, 0, 0), pivot=pivot, limits=(0.0, 1.8), rest=open)
+    w.turns("lid", "body", (-1, 0, 0), pivot, (0.0, 1.8), rest=open)
     if kind == "filter":
         # A door with the filter's basket behind it; both swing out to the left.
         opening = Bay(
@@ -202,7 +200,7 @@ def coffee_machine(
         )
         w.cut("body", room(opening))
         fitting = Fitting(clearance=clearance, grip="edge", rest=open)
-        add_door(w, "filter", parent="body", opening=opening, fitting=fitting, side="left", hinge=hinge)
+        add_door(w, "filter", "body", opening, fitting, side="left", hinge=hinge)
         radius = min(0.22 * width, 0.2 * depth)
         bottom = head + wall
         top_2 = opening.top - wall
@@ -210,7 +208,7 @@ def coffee_machine(
         cup = cylinder(radius, (*centre, bottom), (*centre, top_2)) - cylinder(
             radius - 0.003, (*centre, bottom + 0.003), (*centre, top_2 + 1.0)
         )
-        arm = box((-0.02, -0.5 * wall - clearance, bottom), (0.02, 0.014 + clearance, top_2))
+        arm = slab(0.02, (-0.5 * wall - clearance, 0.014 + clearance), (bottom, top_2))
         w.add("filter", cup, arm - cylinder(radius - 0.003, (*centre, bottom + 0.003), (*centre, top_2 + 1.0)))
         # A jug on the hot plate, which is drawn out to the front.
         radius_2 = min(0.4 * width, 0.26 * depth)
@@ -221,15 +219,15 @@ def coffee_machine(
         hollow = cylinder(radius_2 - 0.004, (0, y, level_2 + 0.004), (0, y, top_3 + 1.0))
         reach = y - radius_2
         grip_2 = union(
-            box((-0.008, reach - 0.045, level_2 + 0.2 * (top_3 - level_2)), (0.008, reach - 0.033, top_3)),
+            slab(0.008, (reach - 0.045, reach - 0.033), (level_2 + 0.2 * (top_3 - level_2), top_3)),
             *[
-                box((-0.008, reach - 0.04, z), (0.008, y, z + 0.012))
+                slab(0.008, (reach - 0.04, y), (z, z + 0.012))
                 for z in (level_2 + 0.25 * (top_3 - level_2), top_3 - 0.014)
             ],
         )
         w.body("jug", glass - hollow, grip_2 - cylinder(radius_2 - 0.002, (0, y, -1), (0, y, 1)), material="glass")
         travel = (0.0, 0.7 * depth)
-        w.slides("jug", parent="body", axis=(0, -1, 0), pivot=(0, y, level_2), limits=travel, rest=open)
+        w.slides("jug", "body", (0, -1, 0), (0, y, level_2), travel, rest=open)
     else:
         # Portafilters that turn in their groups, a steam wand with its knob, and a drip tray.
         share = 0.8 * width / groups
@@ -248,7 +246,7 @@ def coffee_machine(
             spout = cylinder(0.008, (x, y_2, level_3 - 0.02), (x, y_2, level_3))
             name = f"portafilter_{k + 1}"
             w.body(name, rotor, grip_3, spout)
-            w.turns(name, parent="body", axis=(0, 0, -1), pivot=pivot_2, limits=(0.0, turn), rest=open)
+            w.turns(name, "body", (0, 0, -1), pivot_2, (0.0, turn), rest=open)
         x = 0.42 * width
         pivot_2 = (x, 0.15 * depth, head - 0.006)
         boss, hole, rotor = stub(pivot_2, (0, 0, -1), 0.009, clearance, length=0.012)
@@ -257,25 +255,12 @@ def coffee_machine(
         start = (*pivot_2[:2], pivot_2[2] - clearance - 0.009)
         tip = (x, 0.15 * depth - 0.04, base + 0.35 * (head - base))
         w.body("steam_wand", rotor, rod(0.004, start, tip))
-        w.turns("steam_wand", parent="body", axis=(0, 0, 1), pivot=pivot_2, limits=(0.0, 0.9), rest=open)
+        w.turns("steam_wand", "body", (0, 0, 1), pivot_2, (0.0, 0.9), rest=open)
         opening_2 = Bay(left=-0.5 * width, right=0.5 * width, bottom=0.0, top=base, depth=0.58 * depth, wall=wall)
         w.cut("body", room(opening_2))
-        add_drawer(
-            w,
-            "drip_tray",
-            parent="body",
-            opening=opening_2,
-            fitting=Fitting(clearance=clearance, grip="edge", rest=open),
-        )
+        add_drawer(w, "drip_tray", "body", opening_2, Fitting(clearance=clearance, grip="edge", rest=open))
         with drawn_on(w, clearance) as b:
-            knob(
-                b,
-                "knob",
-                parent="body",
-                at=[x, 0, 0.5 * (head + height - the_lid)],
-                out=-Y,
-                radius=min(0.018, 0.07 * width),
-            )
+            knob(b, "knob", "body", [x, 0, 0.5 * (head + height - the_lid)], min(0.018, 0.07 * width), -Y)
     # In a row: on the base under a jug, else on the head.
     low = kind == "filter"
     level_4 = 0.5 * base if low else 0.5 * (head + height - the_lid)
@@ -297,7 +282,6 @@ def coffee_machine(
 
 
 @kind(
-    "fan",
     usual={
         "ceiling fan, overhead fan": {"kind": "ceiling"},
     },
@@ -354,26 +338,26 @@ def fan(
         root = (0.2 * radius, 0.25 * wide)
         tip = (radius - 0.5 * wide, 0.5 * wide)
         ends = [cylinder(r, (x, 0, -0.0015), (x, 0, 0.0015), segments=24) for x, r in (root, tip)]
-        blade = (hull(*ends) + box((0, -root[1], -0.0015), (root[0], root[1], 0.0015))).rotate((pitch, 0, 0))
+        blade = (hull(*ends) + slab((0, root[0]), root[1], 0.0015)).rotate((pitch, 0, 0))
         blades_2 = [blade.translate((0, 0, level)).rotate((0, 0, 360.0 * k / count)) for k in range(count)]
-        cap = cylinder(0.9 * hub, (0, 0, clearance + 0.001), (0, 0, front))
+        cap = cylinder(0.9 * hub, clearance + 0.001, front)
         w.add(f"{parent}", boss.transform(place))
         w.cut(f"{parent}", hole.transform(place))
         w.body("rotor", union(rotor, cap, *blades_2).transform(place))
-        w.turns("rotor", parent=f"{parent}", axis=place[:, 2], pivot=place[:, 3])
+        w.turns("rotor", f"{parent}", place[:, 2], place[:, 3])
 
     # Rods behind and before the blades, and a rim around them.
     def cage(radius: float, motor: float, front: float) -> Manifold:
         outer = radius + 0.012
         back = -0.002 - wire
         top = front + 0.008
-        rim = cylinder(outer + wire, (0, 0, back), (0, 0, top + wire)) - cylinder(outer, (0, 0, -1), (0, 0, 1))
+        rim = cylinder(outer + wire, back, top + wire) - cylinder(outer, -1, 1)
         rods: list[Manifold] = []
         for k in range(spokes):
             for start, level in ((0.6 * motor, back), (0.0, top)):
-                rod = box((start, -0.5 * wire, level), (outer + 0.5 * wire, 0.5 * wire, level + wire))
+                rod = slab((start, outer + 0.5 * wire), 0.5 * wire, (level, level + wire))
                 rods = [*rods, rod.rotate((0, 0, 360.0 * k / spokes))]
-        rods = [*rods, cylinder(0.7 * motor, (0, 0, top), (0, 0, top + 1.5 * wire))]
+        rods = [*rods, cylinder(0.7 * motor, top, top + 1.5 * wire)]
         return union(rim, *rods)
 
     # Buttons in a row, or a knob, on top of the base.
@@ -383,10 +367,10 @@ def fan(
             where = (place[0] + 0.021 * (k - 0.5 * (max(count, 1) - 1)), *place[1:])
             if count:
                 with drawn_on(w, clearance) as b:
-                    button(b, f"button_{k + 1}", parent="base", at=where, out=Z, size=(0.013, 0.012), high=0.004)
+                    button(b, f"button_{k + 1}", "base", where, (0.013, 0.012), 0.004, Z)
             else:
                 with drawn_on(w, clearance, open) as b:
-                    knob(b, "knob", parent="base", at=where, out=Z, radius=0.016, reach=4.7)
+                    knob(b, "knob", "base", where, 0.016, Z, reach=4.7)
 
     if kind == "stand":
         # A foot with a post; a yoke that swings on it, and in the yoke a head that tilts.
@@ -397,18 +381,18 @@ def fan(
         axle = max(height - radius - 0.016, 1.2 * radius + 0.09, lift + 0.11)
         tilt = vector(0.0, 0.0, axle - lift)
         swing = (0.0, 0.0, tilt[2] - 0.042)
-        w.body("base", cylinder(foot, (0, 0, 0), (0, 0, 0.025)), cylinder(0.014, (0, 0, 0.02), swing))
+        w.body("base", cylinder(foot, 0, 0.025), cylinder(0.014, (0, 0, 0.02), swing))
         boss, hole, rotor = stub(swing, (0, 0, 1), 0.018, clearance, length=0.015)
         w.add("base", boss)
         w.cut("base", hole)
         forked, tongue = bent_fork(tilt, (0.0, 0.0), the_fork[0], the_fork[1], clearance)
         w.body("yoke", rotor, forked)
-        w.turns("yoke", parent="base", axis=(0, 0, 1), pivot=swing, limits=(-0.8, 0.8), rest=open)
+        w.turns("yoke", "base", (0, 0, 1), swing, (-0.8, 0.8), rest=open)
         front = -0.5 * radius - 0.03
         housing = cylinder(motor, (0, 0.03, axle), (0, front, axle))
-        neck = box((-0.008, -0.01, tilt[2] + 0.015), (0.008, 0.01, axle))
+        neck = slab(0.008, 0.01, (tilt[2] + 0.015, axle))
         w.body("head", tongue, neck, housing)
-        w.turns("head", parent="yoke", axis=(-1, 0, 0), pivot=tilt, limits=(-0.3, 0.3), rest=open)
+        w.turns("head", "yoke", (-1, 0, 0), tilt, (-0.3, 0.3), rest=open)
         place = at((0, front, axle), FRONT)
         rotor_of("head", place, radius)
         w.add("head", cage(radius, motor, blades_of(radius)[2]).transform(place))
@@ -419,12 +403,12 @@ def fan(
         level = blades_of(radius_2)[2] + 0.004
         w.body(
             "base",
-            cylinder(0.075, (0, 0, height - 0.05), (0, 0, height)),
-            cylinder(0.012, (0, 0, level), (0, 0, height - 0.04)),
-            cylinder(0.09, (0, 0, level), (0, 0, level + 0.09)),
+            cylinder(0.075, height - 0.05, height),
+            cylinder(0.012, level, height - 0.04),
+            cylinder(0.09, level, level + 0.09),
         )
         rotor_of("base", at((0, 0, level), down), radius_2)
-        w.add("rotor", cylinder(0.02, (0, 0, 0), (0, 0, 0.005)))
+        w.add("rotor", cylinder(0.02, 0, 0.005))
     elif kind == "box":
         # A square duct with bars behind and in front of the blades.
         radius_3 = 0.5 * diameter
@@ -435,8 +419,8 @@ def fan(
         w.body("base", cylinder(motor_2, (0, back + 0.03, half), centre))
         rotor_of("base", at(centre, FRONT), radius_3)
         front_2 = back - blades_of(radius_3)[2] - 0.02
-        duct = box((-half, front_2, 0), (half, back + 0.05, 2 * half))
-        duct = duct - box((0.012 - half, -1.0, 0.012), (half - 0.012, 1.0, 2 * half - 0.012))
+        duct = slab(half, (front_2, back + 0.05), (0, 2 * half))
+        duct = duct - slab((0.012 - half, half - 0.012), 1.0, (0.012, 2 * half - 0.012))
         bars: list[Any] = []
         for share in np.linspace(-0.8, 0.8, 9):
             x = share * half
@@ -449,7 +433,6 @@ def fan(
 
 
 @kind(
-    "desk lamp",
     words=(
         "lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light, study lamp, bedside "
         "lamp, drawing lamp, drafting lamp, led lamp, magnifying lamp, piano lamp, anglepoise lamp, workshop lamp, "
@@ -482,21 +465,21 @@ def desk_lamp(
         deep = 1.1 * shade
         cone = Manifold.cylinder(deep, 0.35 * wide, wide, SEGMENTS)
         inner = Manifold.cylinder(deep, 0.35 * wide - 0.002, wide - 0.002, SEGMENTS).translate((0, 0, 0.004))
-        bulb = ball(0.3 * wide, (0, 0, 0.45 * deep)) + cylinder(0.12 * wide, (0, 0, 0.002), (0, 0, 0.4 * deep))
-        socket = cylinder(0.3 * wide, (0, 0, -0.03), (0, 0, 0.002))
+        bulb = ball(0.3 * wide, (0, 0, 0.45 * deep)) + cylinder(0.12 * wide, 0.002, 0.4 * deep)
+        socket = cylinder(0.3 * wide, -0.03, 0.002)
         made = [cone - inner, bulb, socket]
         return [solid.translate((0, 0, 0.01)).rotate((degrees(lean), 0, 0)).translate(neck) for solid in made]
 
     hinges = min(joints, 3)
-    w.body("base", cylinder(base, (0, 0, 0), (0, 0, 0.02)), cylinder(0.6 * base, (0, 0, 0.019), (0, 0, 0.028)))
+    w.body("base", cylinder(base, 0, 0.02), cylinder(0.6 * base, 0.019, 0.028))
     # A button or a knob in front of the post.
     place = (0, -0.8 * base, 0.02)
     if switch == "button":
         with drawn_on(w, clearance) as b:
-            button(b, "button", parent="base", at=place, out=Z, size=(0.016, 0.012), high=0.004)
+            button(b, "button", "base", place, (0.016, 0.012), 0.004, Z)
     elif switch == "knob":
         with drawn_on(w, clearance, open) as b:
-            knob(b, "knob", parent="base", at=place, out=Z, radius=0.12 * base, reach=4.7)
+            knob(b, "knob", "base", place, 0.12 * base, Z, reach=4.7)
     parent = "base"
     pivot = vector(0.0, 0.0, 0.08 if hinges > 1 else 0.03 + 0.8 * arm)
     if joints > hinges:
@@ -505,7 +488,7 @@ def desk_lamp(
         w.cut("base", hole)
         parent = "post"
         w.body(parent, rotor)
-        w.turns(parent, parent="base", axis=(0, 0, 1), pivot=(0, 0, 0.045), limits=(-2.5, 2.5))
+        w.turns(parent, "base", (0, 0, 1), (0, 0, 0.045), (-2.5, 2.5))
         pivot = pivot + vector(0.0, 0.0, 0.02)
         start = (0.0, 0.0, 0.06)
     else:
@@ -524,7 +507,7 @@ def desk_lamp(
         w.body(name, tongue, rod(0.55 * radius, begin, stop))
         if last:
             w.add(name, shade_of(end, leans[k + 1] + 0.5 * pi))
-        w.turns(name, parent=parent, axis=(-1, 0, 0), pivot=pivot, limits=swings[hinges - 1 - k], rest=open)
+        w.turns(name, parent, (-1, 0, 0), pivot, swings[hinges - 1 - k], rest=open)
         parent = name
         pivot = end
     w.settle()

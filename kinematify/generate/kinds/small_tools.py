@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.library.kind import choice, kind, length, share, whole
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, prism, strip, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, prism, slab, strip, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
-    "scissors",
     words=(
         "pair of scissors, kitchen scissors, paper scissors, nail scissors, kitchen shears, fabric shears, "
         "poultry shears, bandage scissors, surgical scissors, sewing scissors, hair scissors, craft scissors, kids "
@@ -50,7 +49,7 @@ def scissors(b: ObjectBuilder, length: float, blade: float, thick: float, loops:
         b.part(
             name,
             hull(
-                b.cylinder(0.9 * wide, (0, 0, z), (0, 0, z + thick)),
+                b.cylinder(0.9 * wide, z, z + thick),
                 box(
                     (-0.2 * s * wide, 0.55 * blade * length, z),
                     (0.75 * s * wide, 0.55 * blade * length + 0.001, z + thick),
@@ -60,26 +59,25 @@ def scissors(b: ObjectBuilder, length: float, blade: float, thick: float, loops:
             strip([(x, y, radius), (x, y + stretch, radius)], 0, tall),
             strip([(x, top, 0.6 * wall), (0.45 * x, end, 0.55 * wall)], 0, tall),
             strip([(0, 0, 0.9 * wide), (x, top, 0.4 * wall)], z, z + thick),
-            material="steel",
+            look="steel",
         )
         b.cut(
             name,
             strip([(x, y, radius - wall), (x, y + stretch, radius - wall)], -1, 1),
-            box((-s * gap2, -2 * length, -1), (s * length, -1.1 * wide, 1)),
+            slab((-s * gap2, s * length), (-2 * length, -1.1 * wide), 1),
         )
     r = 0.022 * length
     top = mid + g / 2 + thick + g
     b.part(
         "blade_1",
-        b.cylinder(r, (0, 0, mid - thick), (0, 0, top + 0.0001)),
-        b.cylinder(1.8 * r, (0, 0, top), (0, 0, top + r / 2)),
+        b.cylinder(r, mid - thick, top + 0.0001),
+        b.cylinder(1.8 * r, top, top + r / 2),
     )
-    b.cut("blade_2", b.cylinder(r + 1.5 * g, (0, 0, -1), (0, 0, 1)))
-    b.hinge("blade_2", parent="blade_1", axis=Z, pivot=(0, 0, mid), upper=1.1)
+    b.cut("blade_2", b.cylinder(r + 1.5 * g, -1, 1))
+    b.hinge("blade_2", "blade_1", Z, (0, 0, mid), 1.1)
 
 
 @kind(
-    "pliers",
     words=(
         "pair of pliers, combination pliers, pincers, pair of pincers, wire cutters, wire cutter, side cutter, "
         "nippers, wire stripper, crimping pliers, cutting pliers, cable cutter, lineman pliers, long nose pliers, "
@@ -118,7 +116,7 @@ def pliers(b: ObjectBuilder, length: float, thick: float, jaws: str, grips: str)
     for name, s, z0, z1 in (("lever_1", 1, 0, mid - g / 2), ("lever_2", -1, mid + g / 2, thick)):
         b.part(
             name,
-            b.cylinder(radius, (0, 0, z0), (0, 0, z1)),
+            b.cylinder(radius, z0, z1),
             hull(
                 box((s * inner, radius / 2, 0), (s * shape[1] * radius, 0.7 * radius, thick)),
                 box((s * inner, jaw / 2, 0), (s * (shape[1] + shape[2]) / 2 * radius, 0.51 * jaw, thick)),
@@ -133,32 +131,29 @@ def pliers(b: ObjectBuilder, length: float, thick: float, jaws: str, grips: str)
                 0,
                 thick,
             ),
-            material="steel",
+            look="steel",
         )
         if grips != "none":
             b.part(name, strip([(s * bow, -back / 2, 1.15 * half), (s * bow, half - back, half)], 0, 1.12 * thick))
         b.cut(
             name,
-            b.tube(radius + g, 0.408 * radius, (0, 0, z1), (0, 0, thick + g / 2))
-            if s > 0
-            else b.cylinder(radius + g, (0, 0, -1), (0, 0, z0)),
+            b.tube(radius + g, 0.408 * radius, z1, thick + g / 2) if s > 0 else b.cylinder(radius + g, -1, z0),
             [
-                box((0, y, -1), (s * (inner + 0.0004), y + 0.4 * pitch, 1))
+                slab((0, s * (inner + 0.0004)), (y, y + 0.4 * pitch), 1)
                 for y in [0.6 * jaw + k * pitch for k in range(n)]
             ],
         )
     r = 0.4 * radius
     b.part(
         "lever_1",
-        b.cylinder(r, (0, 0, 0.0001), (0, 0, thick + g + 0.0001)),
-        b.cylinder(1.8 * r, (0, 0, thick + g), (0, 0, thick + g + r / 2)),
+        b.cylinder(r, 0.0001, thick + g + 0.0001),
+        b.cylinder(1.8 * r, thick + g, thick + g + r / 2),
     )
-    b.cut("lever_2", b.cylinder(r + 1.5 * g, (0, 0, -1), (0, 0, 1)))
-    b.hinge("lever_2", parent="lever_1", axis=Z, pivot=(0, 0, mid), upper=0.55)
+    b.cut("lever_2", b.cylinder(r + 1.5 * g, -1, 1))
+    b.hinge("lever_2", "lever_1", Z, (0, 0, mid), 0.55)
 
 
 @kind(
-    "stapler",
     words="desk stapler, office stapler, toy stapler, booklet stapler",
     material="metal",
     length=length(0.08, 0.3, default=0.15, usual=(0.11, 0.2), help="Of the base."),
@@ -187,30 +182,29 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
             hull(box((x, y - 0.012, 0.004), (x + e, y + 0.012, 0.008)), b.cylinder(0.007, (x, y, z), (x + e, y, z)))
             for x in (-half, half - e)
         ],
-        hull(b.cylinder(half, (0, half, 0), (0, half, 0.008)), box((-half, length - 0.02, 0), (half, length, 0.008))),
-        box((-0.4 * half, 0.006, 0.0079), (0.4 * half, 0.026, 0.0095)),
+        hull(b.cylinder(half, (0, half, 0), (0, half, 0.008)), slab(half, (length - 0.02, length), (0, 0.008))),
+        slab(0.4 * half, (0.006, 0.026), (0.0079, 0.0095)),
         b.cylinder(0.0025, (-half, y, z), (half, y, z)),
-        material="metal",
+        look="metal",
     )
     b.part(
         "magazine",
-        box((-inner, 0.004, low), (inner, y - 0.012, low + e)),
+        slab(inner, (0.004, y - 0.012), (low, low + e)),
         [box((x, 0.004, low), (x + e, y - 0.012, top)) for x in (-inner, inner - e)],
-        box((-inner, 0.004, low), (inner, 0.004 + e, top)),
+        slab(inner, (0.004, 0.004 + e), (low, top)),
         box((0.0001 - inner, 0.014, low), (inner - 0.0001, 0.6 * y, low + 0.4 * (top - low))),
         [
             hull(box((x, y - 0.022, low), (x + e, y - 0.012, top)), b.cylinder(0.006, (x, y, z), (x + e, y, z)))
             for x in (-inner, inner - e)
         ],
-        material="steel",
-        color="silver",
+        look="silver steel",
     )
     b.part(
         "arm",
         hull(
             b.cylinder(level, (-outer, front, under + level), (outer, front, under + level)),
             b.cylinder(level, (-outer, y, under + level), (outer, y, under + level)),
-            box((-outer, y / 2, under), (outer, y, under + cover)),
+            slab(outer, (y / 2, y), (under, under + cover)),
         ),
         [
             hull(
@@ -220,7 +214,7 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
             for x in (-outer, outer - e)
         ],
         box((g + e - inner, 0.0085, z - 0.003), (inner - e - g, 0.0095, under + level)),
-        material="metal",
+        look="metal",
     )
     if cover_shape == "round":
         b.part(
@@ -234,11 +228,10 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
         )
     for name, above, down, upper in (("magazine", "base", 0.005, 1.2), ("arm", "magazine", 0.008, 1.3)):
         b.cut(name, b.cylinder(0.0025 + 1.5 * g, (-1, y, z), (1, y, z)))
-        b.hinge(name, parent=above, axis=-X, pivot=(0, y, z), lower=-down / length, upper=upper)
+        b.hinge(name, above, -X, (0, y, z), upper, lower=-down / length)
 
 
 @kind(
-    "pen",
     words=(
         "ballpoint pen, ballpoint, ball pen, biro, fountain pen, felt pen, marker, click pen, retractable "
         "pen, gel pen, rollerball pen, mechanical pencil"
@@ -265,8 +258,8 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
     s = 1 if fixed < free else -1
     tip = length if mechanism == "click" else m
     clip = [
-        box((-0.002, free, 2 * r + 0.0012), (0.002, fixed, 2 * r + 0.0024)),
-        box((-0.002, fixed, 1.8 * r), (0.002, fixed + s * 0.004, 2 * r + 0.0024)),
+        slab(0.002, (free, fixed), (2 * r + 0.0012, 2 * r + 0.0024)),
+        slab(0.002, (fixed, fixed + s * 0.004), (1.8 * r, 2 * r + 0.0024)),
         b.cylinder(0.001, (-0.002, free - s * 0.002, 2 * r + 0.0012), (0.002, free - s * 0.002, 2 * r + 0.0012)),
     ]
     if mechanism == "cap":
@@ -284,7 +277,7 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
             .rotate((-90, 0, 0))
             .translate((0, 0, r)),
         )
-        b.slide("cap", parent="barrel", axis=-Y, upper=n + 0.01)
+        b.slide("cap", "barrel", -Y, n + 0.01)
     else:
         b.part(
             "barrel",
@@ -309,7 +302,7 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
                 )
                 .rotate((-90, 0, 0))
                 .translate((0, 0, r)),
-                box((-0.14 * r - g, 0.012, 0.24 * r - g), (0.14 * r + g, end, 1.76 * r + g)),
+                slab(0.14 * r + g, (0.012, end), (0.24 * r - g, 1.76 * r + g)),
             )
             b.part(
                 "button",
@@ -329,10 +322,10 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
                 )
                 .rotate((-90, 0, 0))
                 .translate((0, 0, r)),
-                box((-0.14 * r, end - 0.02, 0.24 * r), (0.14 * r, end - g, 1.76 * r)),
-                material="metal",
+                slab(0.14 * r, (end - 0.02, end - g), (0.24 * r, 1.76 * r)),
+                look="metal",
             )
-            b.slide("button", parent="barrel", axis=-Y, upper=0.005)
+            b.slide("button", "barrel", -Y, 0.005)
         else:
             b.cut("barrel", b.cylinder(0.55 * r + 1.5 * g, (0, m - 1.4 * k - g, r), (0, m + g, r)))
             b.part("barrel", b.cylinder(0.0006, (0, -0.002, r), (0, 0.012, r)))
@@ -342,13 +335,12 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
                 b.cylinder(r, (0, m + g, r), (0, length, r)),
                 b.cylinder(r + 0.0005, (0, m + g, r), (0, m + g + 0.002, r)),
                 clip,
-                material="metal",
+                look="metal",
             )
-            b.hinge("grip", parent="barrel", axis=Y, pivot=(0, m, r), upper=3.0)
+            b.hinge("grip", "barrel", Y, (0, m, r), 3.0)
 
 
 @kind(
-    "clock",
     words=(
         "wall clock, kitchen clock, station clock, table clock, analog clock, alarm clock, desk clock, office "
         "clock, school clock, hallway clock, mantel clock"
@@ -376,9 +368,9 @@ def clock(b: ObjectBuilder, width: float, depth: float, frame: float, hands: int
     if shape == "square":
         b.part(
             "body",
-            box((-half, recess, 0), (half, depth, width)),
+            slab(half, (recess, depth), (0, width)),
             [box((x - frame / 2, 0, 0), (x + frame / 2, depth, width)) for x in (frame / 2 - half, half - frame / 2)],
-            [box((-half, 0, z - frame / 2), (half, depth, z + frame / 2)) for z in (frame / 2, width - frame / 2)],
+            [slab(half, (0, depth), (z - frame / 2, z + frame / 2)) for z in (frame / 2, width - frame / 2)],
         )
     else:
         b.part(
@@ -428,9 +420,8 @@ def clock(b: ObjectBuilder, width: float, depth: float, frame: float, hands: int
             ),
             b.cylinder(max(2.2 * r, 0.02 * dial), c + (y - thin) * Y, c + y * Y),
             b.cylinder(r, c + (y - 0.0001) * Y, c + back * Y),
-            material="metal",
-            color=f"{'red' if k == 2 else 'black'}",
+            look=("metal", f"{'red' if k == 2 else 'black'}"),
         )
         if k + 1 < n:
             b.cut(f"hand_{k + 1}", b.cylinder(1.003 * (r - thin), c - Y, c + Y))
-        b.spin(f"hand_{k + 1}", parent="body", axis=Y, pivot=c + y * Y)
+        b.spin(f"hand_{k + 1}", "body", Y, c + y * Y)

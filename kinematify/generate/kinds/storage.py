@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.panels import carcass, rack
 
 if TYPE_CHECKING:
@@ -13,25 +13,24 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "tray rack",
     walls=8,
     words="rack of trays, baking rack, tray trolley, bakery rack, letter tray",
-    width=length(0.2, 0.7),
-    depth=length(0.25, 0.6),
-    height=length(0.1, 1.5),
+    width=(0.2, 0.7),
+    depth=(0.25, 0.6),
+    height=(0.1, 1.5),
     number=whole(1, 16, default=3, usual=(1, 6), words="tray"),
-    wall=length(0.006, 0.025),
+    wall=(0.006, 0.025),
 )
 def tray_rack(b: ObjectBuilder, width: float, depth: float, height: float, number: int, wall: float) -> None:
     """Trays, baskets or sheets without fronts that slide in an open case: cutlery, letters, bread."""
-    carcass(b, "case", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), wall=wall, material="steel")
+    carcass(b, "case", (-width / 2, 0, 0), (width / 2, depth, height), wall, material="steel")
     for k, z in enumerate(spread(number, wall, height - wall)):
         high = b.draw(0.25, 0.6) * (height - 2 * wall) / number
         rack(
             b,
             f"tray_{k}",
-            parent="case",
-            lower=(-width / 2 + wall, b.pick(0, -0.01, 0.02), z - high / 2),
-            upper=(width / 2 - wall, depth - 1.5 * wall, z + high / 2),
+            "case",
+            (-width / 2 + wall, b.pick(0, -0.01, 0.02), z - high / 2),
+            (width / 2 - wall, depth - 1.5 * wall, z + high / 2),
             travel=b.draw(0.5, 0.95),
         )

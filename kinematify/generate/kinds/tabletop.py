@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.kind import kind, length
+from kinematify.generate.library.kind import kind
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, box, vector
+from kinematify.generate.procedural.solids import X, Y, Z, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -20,23 +20,23 @@ if TYPE_CHECKING:
     "bag",
     walls=4,
     words="handbag, shopping bag, tote bag, gym bag, doctor bag, purse",
-    width=length(0.2, 0.45),
-    depth=length(0.08, 0.2),
-    height=length(0.15, 0.35),
-    wire=length(0.003, 0.008),
+    width=(0.2, 0.45),
+    depth=(0.08, 0.2),
+    height=(0.15, 0.35),
+    wire=(0.003, 0.008),
 )
 def plain_bag(b: ObjectBuilder, width: float, depth: float, height: float, wire: float) -> None:
     """A bag or a basket with one handle or two that swing on its rim, and a flap at times."""
-    b.part("bag", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, height)))
+    b.part("bag", slab(width / 2, depth / 2, (0, height)))
     if b.style.hollow:
-        b.cut("bag", box((-0.47 * width, -0.44 * depth, 0.02 * height), (0.47 * width, 0.44 * depth, height + 1)))
+        b.cut("bag", slab(0.47 * width, 0.44 * depth, (0.02 * height, height + 1)))
     if b.maybe(0.4):
         leaf(
             b,
             "flap",
-            parent="bag",
-            lower=(-width / 2, -depth / 2, height),
-            upper=(width / 2, depth / 2, height + 0.012),
+            "bag",
+            (-width / 2, -depth / 2, height),
+            (width / 2, depth / 2, height + 0.012),
             hinge=Y,
             out=Z,
             handle=False,
@@ -50,4 +50,4 @@ def plain_bag(b: ObjectBuilder, width: float, depth: float, height: float, wire:
         z = height - b.draw(0.02, 0.15) * height
         points = [vector(half * cos(a), y, z + tall * sin(a)) for a in np.linspace(0, pi, b.count(5, 10))]
         b.part(f"strap_{k}", [b.rod(wire, p, q) for p, q in pairwise(points)])
-        b.hinge(f"strap_{k}", parent="bag", axis=s * -X, pivot=(0, y, z), upper=b.draw(0.8, 2.5), ajar=False)
+        b.hinge(f"strap_{k}", "bag", s * -X, (0, y, z), b.draw(0.8, 2.5), ajar=False)

@@ -5,20 +5,19 @@ from __future__ import annotations
 from math import cos, pi, sin, tan
 from typing import TYPE_CHECKING
 
-from kinematify.generate.library.kind import kind, length, whole
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, vector
+from kinematify.generate.library.kind import kind, whole
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
-    "scissor lift",
     words=(
         "scissor lift table, scissor jack, scissor platform, lab jack, pantograph lift, hydraulic lift table, "
         "lift table, platform lift, lifting platform"
     ),
-    length=length(0.3, 1.4),
+    length=(0.3, 1.4),
     stages=whole(1, 4),
 )
 def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
@@ -29,7 +28,7 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
     z0 = 0.09 * L
     b.part(
         "base",
-        box((-0.56 * L, -0.32 * L, 0), (0.56 * L, 0.32 * L, 0.04 * L)),
+        slab(0.56 * L, 0.32 * L, (0, 0.04 * L)),
         [
             box(
                 (-0.5 * L - 0.04 * L, s * (a - 2.2 * t), 0.03 * L),
@@ -37,8 +36,7 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
             )
             for s in (-1, 1)
         ],
-        material="steel",
-        color="yellow",
+        look="yellow steel",
     )
     c = cos(q)
     height = sin(q)
@@ -66,13 +64,12 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
                 )
                 for s in (-1, 1)
             ],
-            material="steel",
-            color="grey",
+            look="grey steel",
         )
-        b.hinge(f"arm_{k}", parent=top, axis=-Y, pivot=foot, upper=1.0 if k else 0.5, lower=-0.4 if k else -0.2)
+        b.hinge(f"arm_{k}", top, -Y, foot, 1.0 if k else 0.5, lower=-0.4 if k else -0.2)
         if k:
             b.cut(f"arm_{k}", b.cylinder(0.0135 * L, foot - L * Y, foot + L * Y))
-            b.follow(f"arm_{k}", leader="arm_0", multiplier=2)
+            b.follow(f"arm_{k}", "arm_0", 2)
         b.part(
             f"cross_{k}",
             [
@@ -87,18 +84,17 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
             ],
             b.cylinder(0.012 * L, end - (a + 1.3 * t) * Y, end + (a + 1.3 * t) * Y),
             [b.cylinder(0.025 * L, end + s * (a + 0.8 * t) * Y, end + s * (a + 1.8 * t) * Y) for s in (-1, 1)],
-            material="steel",
-            color="grey",
+            look="grey steel",
         )
         b.cut(f"cross_{k}", b.cylinder(0.0135 * L, middle - L * Y, middle + L * Y))
-        b.hinge(f"cross_{k}", parent=f"arm_{k}", axis=Y, pivot=middle, upper=1.2, lower=-0.6)
-        b.follow(f"cross_{k}", leader="arm_0", multiplier=2)
+        b.hinge(f"cross_{k}", f"arm_{k}", Y, middle, 1.2, lower=-0.6)
+        b.follow(f"cross_{k}", "arm_0", 2)
         top = f"cross_{k}"
         lift = z0 + (k + 1) * L * height
     end = vector(-0.5 * L * c, 0, lift)
     b.part(
         "platform",
-        box((-0.56 * L, -0.32 * L, lift + 0.05 * L), (0.56 * L, 0.32 * L, lift + 0.09 * L)),
+        slab(0.56 * L, 0.32 * L, (lift + 0.05 * L, lift + 0.09 * L)),
         [
             box(
                 (-0.5 * L - 0.03 * L, s * (a - 2.4 * t), lift - 0.03 * L),
@@ -106,18 +102,16 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
             )
             for s in (-1, 1)
         ],
-        material="steel",
-        color="yellow",
+        look="yellow steel",
     )
     b.cut("platform", b.cylinder(0.0135 * L, end - L * Y, end + L * Y))
-    b.hinge("platform", parent=top, axis=-Y, pivot=end, upper=0.6, lower=-0.3)
-    b.follow("platform", leader="arm_0", multiplier=1)
+    b.hinge("platform", top, -Y, end, 0.6, lower=-0.3)
+    b.follow("platform", "arm_0", 1)
 
 
 @kind(
-    "crank slider",
     words="slider crank, piston engine, single cylinder engine, crank mechanism, reciprocating engine",
-    radius=length(0.03, 0.08),
+    radius=(0.03, 0.08),
 )
 def crank_slider(b: ObjectBuilder, radius: float) -> None:
     r = radius
@@ -125,12 +119,11 @@ def crank_slider(b: ObjectBuilder, radius: float) -> None:
     b.part(
         "frame",
         box((-1.6 * r, 0, -1.8 * r), (6.4 * r, 0.3 * r, -1.4 * r)),
-        box((-0.4 * r, 0, -1.5 * r), (0.4 * r, 0.3 * r, 0.4 * r)),
-        [box((2.2 * r, -0.3 * r, s * 0.42 * r), (6.4 * r, 0.3 * r, s * 0.62 * r)) for s in (-1, 1)],
+        slab(0.4 * r, (0, 0.3 * r), (-1.5 * r, 0.4 * r)),
+        [slab((2.2 * r, 6.4 * r), 0.3 * r, (s * 0.42 * r, s * 0.62 * r)) for s in (-1, 1)],
         box((6 * r, 0, -1.5 * r), (6.4 * r, 0.3 * r, 0.6 * r)),
-        box((2.2 * r, 0.1 * r, -0.6 * r), (6.4 * r, 0.3 * r, 0.6 * r)),
-        material="steel",
-        color="grey",
+        slab((2.2 * r, 6.4 * r), (0.1 * r, 0.3 * r), 0.6 * r),
+        look="grey steel",
     )
     b.bore("frame", b.cylinder(0.22 * r, (0, -r, 0), (0, r, 0)))
     b.part(
@@ -138,44 +131,38 @@ def crank_slider(b: ObjectBuilder, radius: float) -> None:
         b.cylinder(0.2 * r, (0, -0.3 * r, 0), (0, 0.5 * r, 0)),
         b.cylinder(1.25 * r, (0, -0.3 * r, 0), (0, -0.05 * r, 0)),
         b.cylinder(0.16 * r, (r, -0.6 * r, 0), (r, -0.25 * r, 0)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.spin("crank", parent="frame", axis=-Y, pivot=(0, 0, 0))
+    b.spin("crank", "frame", -Y, (0, 0, 0))
     b.part(
         "rod",
         beam(0.3 * r, 0.22 * r, (r, -0.45 * r, 0), (r + l, -0.45 * r, 0), Y),
         b.cylinder(0.3 * r, (r, -0.56 * r, 0), (r, -0.34 * r, 0)),
         b.cylinder(0.25 * r, (r + l, -0.56 * r, 0), (r + l, -0.34 * r, 0)),
-        material="metal",
+        look="metal",
     )
     b.cut("rod", b.cylinder(0.18 * r, (r, -1, 0), (r, 1, 0)))
-    b.spin("rod", parent="crank", axis=-Y, pivot=(r, 0, 0))
+    b.spin("rod", "crank", -Y, (r, 0, 0))
     b.part(
         "piston",
-        box((r + l - 0.3 * r, -0.3 * r, -0.4 * r), (r + l + 0.7 * r, 0.06 * r, 0.4 * r)),
+        slab((r + l - 0.3 * r, r + l + 0.7 * r), (-0.3 * r, 0.06 * r), 0.4 * r),
         b.cylinder(0.16 * r, (r + l, -0.335 * r, 0), (r + l, -0.2 * r, 0)),
-        material="metal",
+        look="metal",
     )
-    b.slide("piston", parent="frame", axis=-X, upper=2.05 * r, lower=-0.02 * r)
-    b.close("piston", parent="rod", pivot=(r + l, -0.45 * r, 0))
+    b.slide("piston", "frame", -X, 2.05 * r, lower=-0.02 * r)
+    b.close("piston", "rod", (r + l, -0.45 * r, 0))
 
 
-@kind(
-    "four bar linkage",
-    words="four-bar linkage, four bar mechanism, parallelogram linkage, parallel linkage",
-    length=length(0.12, 0.3),
-)
+@kind(words="four-bar linkage, four bar mechanism, parallelogram linkage, parallel linkage", length=(0.12, 0.3))
 def four_bar_linkage(b: ObjectBuilder, length: float) -> None:
     L = length
     t = 0.04 * L
     h = 0.5 * L
     b.part(
         "ground",
-        box((-0.15 * L, 0, -0.06 * L), (1.15 * L, t, 0.06 * L)),
+        slab((-0.15 * L, 1.15 * L), (0, t), 0.06 * L),
         [b.cylinder(0.03 * L, (x, -1.3 * t, 0), (x, t, 0)) for x in (0, L)],
-        material="steel",
-        color="black",
+        look="black steel",
     )
     for name, x in (("crank", 0), ("rocker", L)):
         b.part(
@@ -184,28 +171,26 @@ def four_bar_linkage(b: ObjectBuilder, length: float) -> None:
             b.cylinder(0.05 * L, (x, -1.2 * t, 0), (x, -0.2 * t, 0)),
             b.cylinder(0.05 * L, (x, -1.2 * t, h), (x, -0.2 * t, h)),
             b.cylinder(0.025 * L, (x, -2.6 * t, h), (x, -0.5 * t, h)),
-            material="metal",
-            color=f"{'red' if x == 0 else 'blue'}",
+            look=("metal", f"{'red' if x == 0 else 'blue'}"),
         )
         b.cut(name, b.cylinder(0.0325 * L, (x, -1, 0), (x, 1, 0)))
-        b.hinge(name, parent="ground", axis=Y, pivot=(x, 0, 0), upper=0.9, lower=-0.9)
-    b.follow("rocker", leader="crank", multiplier=1)
+        b.hinge(name, "ground", Y, (x, 0, 0), 0.9, lower=-0.9)
+    b.follow("rocker", "crank", 1)
     b.part(
         "coupler",
         beam(0.07 * L, t, (0, -2 * t, h), (L, -2 * t, h), Y),
         [b.cylinder(0.05 * L, (x, -2.5 * t, h), (x, -1.5 * t, h)) for x in (0, L)],
-        material="metal",
+        look="metal",
     )
     b.cut("coupler", [b.cylinder(0.028 * L, (x, -1, h), (x, 1, h)) for x in (0, L)])
-    b.hinge("coupler", parent="crank", axis=-Y, pivot=(0, 0, h), upper=0.9, lower=-0.9)
-    b.follow("coupler", leader="crank", multiplier=1)
-    b.close("coupler", parent="rocker", pivot=(L, -2 * t, h))
+    b.hinge("coupler", "crank", -Y, (0, 0, h), 0.9, lower=-0.9)
+    b.follow("coupler", "crank", 1)
+    b.close("coupler", "rocker", (L, -2 * t, h))
 
 
 @kind(
-    "geneva drive",
     words="geneva mechanism, maltese cross, indexing mechanism",
-    radius=length(0.04, 0.09),
+    radius=(0.04, 0.09),
     slots=whole(4, 8, default=4, words="slot, station, position"),
 )
 def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
@@ -217,11 +202,11 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
     step = 2 * pi / slots
     b.part(
         "plate",
-        box((-half, 0, -half), (c + 1.5 * r, 0.12 * r, half)),
+        slab((-half, c + 1.5 * r), (0, 0.12 * r), half),
         [b.cylinder(0.14 * r, (x, -0.5 * r, 0), (x, 0.02 * r, 0)) for x in (0, c)],
-        material="steel",
+        look="steel",
     )
-    b.part("wheel", b.cylinder(0.95 * rim, (0, -0.28 * r, 0), (0, -0.05 * r, 0)), material="brass")
+    b.part("wheel", b.cylinder(0.95 * rim, (0, -0.28 * r, 0), (0, -0.05 * r, 0)), look="brass")
     b.cut(
         "wheel",
         [
@@ -240,29 +225,27 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
         ],
         b.cylinder(0.155 * r, (0, -r, 0), (0, r, 0)),
     )
-    b.spin("wheel", parent="plate", axis=-Y, pivot=(0, 0, 0))
+    b.spin("wheel", "plate", -Y, (0, 0, 0))
     b.part(
         "driver",
         b.cylinder(1.1 * r, (c, -0.45 * r, 0), (c, -0.3 * r, 0)),
         b.cylinder(0.58 * r, (c, -0.31 * r, 0), (c, -0.285 * r, 0)),
         b.rod(0.1 * r, (c + 0.6 * r, -0.44 * r, 0), (c + 0.6 * r, -0.9 * r, 0)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.cut(
         "driver",
         b.cylinder(0.155 * r, (c, -2 * r, 0), (c, r, 0)),
-        box((c, -0.305 * r, -0.4 * r), (c + 0.7 * r, 0, 0.4 * r)),
+        slab((c, c + 0.7 * r), (-0.305 * r, 0), 0.4 * r),
     )
     b.part("driver", b.cylinder(0.08 * r, (c + r, -0.31 * r, 0), (c + r, -0.285 * r, 0)))
-    b.spin("driver", parent="plate", axis=-Y, pivot=(c, 0, 0))
+    b.spin("driver", "plate", -Y, (c, 0, 0))
 
 
 @kind(
-    "orrery",
     words="planetarium model, solar system model, tellurion, model of the solar system",
     number=whole(3, 8, words="planet"),
-    size=length(0.8, 1.4),
+    size=(0.8, 1.4),
 )
 def orrery(b: ObjectBuilder, number: int, size: float) -> None:
     p = scaled(size)
@@ -271,7 +254,7 @@ def orrery(b: ObjectBuilder, number: int, size: float) -> None:
         b.cylinder(0.1 * size, p(0, 0, 0), p(0, 0, 0.02)),
         b.cylinder(0.006 * size, p(0, 0, 0.01), p(0, 0, 0.36)),
         ball(0.035 * size, p(0, 0, 0.38)),
-        material="brass",
+        look="brass",
     )
     for k in range(number):
         x = 0.07 + 0.035 * k
@@ -289,29 +272,24 @@ def orrery(b: ObjectBuilder, number: int, size: float) -> None:
             ),
             b.cylinder(0.0025 * size, p(x * cos(a), x * sin(a), z + 0.007), p(x * cos(a), x * sin(a), 0.375)),
             ball(r * size, p(x * cos(a), x * sin(a), 0.38)),
-            material="brass",
+            look="brass",
         )
-        b.spin(f"planet_{k}", parent="base", axis=Z, pivot=p(0, 0, 0))
+        b.spin(f"planet_{k}", "base", Z, p(0, 0, 0))
 
 
-@kind(
-    "scotch yoke",
-    words="slotted link mechanism",
-    radius=length(0.03, 0.08),
-)
+@kind(words="slotted link mechanism", radius=(0.03, 0.08))
 def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "frame",
-        box((-2.2 * r, 0.05 * r, -2 * r), (4.2 * r, 0.25 * r, 2 * r)),
-        box((3.4 * r, -r, -0.35 * r), (3.8 * r, 0.06 * r, 0.35 * r)),
-        material="steel",
-        color="grey",
+        slab((-2.2 * r, 4.2 * r), (0.05 * r, 0.25 * r), 2 * r),
+        slab((3.4 * r, 3.8 * r), (-r, 0.06 * r), 0.35 * r),
+        look="grey steel",
     )
     b.bore(
         "frame",
         b.cylinder(0.21 * r, (0, -r, 0), (0, r, 0)),
-        box((2 * r, -0.87 * r, -0.17 * r), (5 * r, -0.53 * r, 0.17 * r)),
+        slab((2 * r, 5 * r), (-0.87 * r, -0.53 * r), 0.17 * r),
     )
     b.part(
         "crank",
@@ -319,39 +297,35 @@ def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
         b.cylinder(1.25 * r, (0, -0.3 * r, 0), (0, -0.02 * r, 0)),
         b.cylinder(0.15 * r, (0, -0.54 * r, r), (0, -0.25 * r, r)),
         b.cylinder(0.09 * r, (0, -0.75 * r, r), (0, -0.5 * r, r)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.spin("crank", parent="frame", axis=-Y, pivot=(0, 0, 0))
+    b.spin("crank", "frame", -Y, (0, 0, 0))
     b.part(
         "yoke",
-        box((-0.4 * r, -0.8 * r, -1.5 * r), (0.4 * r, -0.55 * r, 1.5 * r)),
-        box((0.3 * r, -0.85 * r, -0.15 * r), (5 * r, -0.55 * r, 0.15 * r)),
-        material="metal",
+        slab(0.4 * r, (-0.8 * r, -0.55 * r), 1.5 * r),
+        slab((0.3 * r, 5 * r), (-0.85 * r, -0.55 * r), 0.15 * r),
+        look="metal",
     )
-    b.cut("yoke", box((-0.18 * r, -2 * r, -1.25 * r), (0.18 * r, 0, 1.25 * r)))
-    b.slide("yoke", parent="frame", axis=X, upper=r, lower=-r)
-    b.part("slider", box((-0.165 * r, -0.78 * r, 0.8 * r), (0.165 * r, -0.57 * r, 1.2 * r)), material="brass")
+    b.cut("yoke", slab(0.18 * r, (-2 * r, 0), 1.25 * r))
+    b.slide("yoke", "frame", X, r, lower=-r)
+    b.part("slider", slab(0.165 * r, (-0.78 * r, -0.57 * r), (0.8 * r, 1.2 * r)), look="brass")
     b.cut("slider", b.cylinder(0.105 * r, (0, -r, r), (0, 0, r)))
-    b.slide("slider", parent="yoke", axis=-Z, upper=2.01 * r, lower=-0.01 * r)
-    b.close("slider", parent="crank", pivot=(0, -0.68 * r, r))
+    b.slide("slider", "yoke", -Z, 2.01 * r, lower=-0.01 * r)
+    b.close("slider", "crank", (0, -0.68 * r, r))
 
 
 @kind(
-    "rack and pinion",
-    words="rack and pinion gear, gear rack, steering rack, rack and pinion steering, steering gear",
-    radius=length(0.02, 0.05),
+    words="rack and pinion gear, gear rack, steering rack, rack and pinion steering, steering gear", radius=(0.02, 0.05)
 )
 def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
     r = radius
     n = 14
     b.part(
         "frame",
-        box((-5 * r, 0.06 * r, -2.2 * r), (5 * r, 0.3 * r, 1.4 * r)),
-        box((-5 * r, -0.7 * r, -2.2 * r), (5 * r, 0.07 * r, -1.72 * r)),
+        slab(5 * r, (0.06 * r, 0.3 * r), (-2.2 * r, 1.4 * r)),
+        slab(5 * r, (-0.7 * r, 0.07 * r), (-2.2 * r, -1.72 * r)),
         b.cylinder(0.2 * r, (0, -0.8 * r, 0), (0, 0.1 * r, 0)),
-        material="steel",
-        color="grey",
+        look="grey steel",
     )
     b.part(
         "pinion",
@@ -360,13 +334,13 @@ def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
             beam(0.17 * r, 0.5 * r, (0, -0.3 * r, 0), (1.06 * r * cos(a), -0.3 * r, 1.06 * r * sin(a)), Y)
             for a in [-1.5708 + 6.28318 * k / n for k in range(n)]
         ],
-        material="brass",
+        look="brass",
     )
     b.cut("pinion", b.cylinder(0.22 * r, (0, -2 * r, 0), (0, r, 0)))
-    b.hinge("pinion", parent="frame", axis=-Y, pivot=(0, 0, 0), upper=2.0, lower=-2.0)
+    b.hinge("pinion", "frame", -Y, (0, 0, 0), 2.0, lower=-2.0)
     b.part(
         "rack",
-        box((-4 * r, -0.6 * r, -1.7 * r), (4 * r, 0.02 * r, -1.2 * r)),
+        slab(4 * r, (-0.6 * r, 0.02 * r), (-1.7 * r, -1.2 * r)),
         [
             box(
                 (6.28318 * r / n * (k + 0.5) - 0.08 * r, -0.6 * r, -1.21 * r),
@@ -374,26 +348,21 @@ def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
             )
             for k in range(-8, 8)
         ],
-        material="steel",
+        look="steel",
     )
-    b.slide("rack", parent="frame", axis=X, upper=2.0 * r, lower=-2.0 * r)
-    b.follow("rack", leader="pinion", multiplier=r)
+    b.slide("rack", "frame", X, 2.0 * r, lower=-2.0 * r)
+    b.follow("rack", "pinion", r)
 
 
-@kind(
-    "worm gear",
-    words="worm drive, worm and wheel",
-    radius=length(0.03, 0.08),
-)
+@kind(words="worm drive, worm and wheel", radius=(0.03, 0.08))
 def worm_gear(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "frame",
-        box((-1.5 * r, 0.45 * r, -2.2 * r), (1.5 * r, 0.65 * r, 1.4 * r)),
+        slab(1.5 * r, (0.45 * r, 0.65 * r), (-2.2 * r, 1.4 * r)),
         b.cylinder(0.2 * r, (0, -0.4 * r, 0), (0, 0.5 * r, 0)),
         [box((s * 1.3 * r, -0.3 * r, -1.75 * r), (s * 1.5 * r, 0.5 * r, -1.2 * r)) for s in (-1, 1)],
-        material="steel",
-        color="grey",
+        look="grey steel",
     )
     b.bore("frame", b.cylinder(0.13 * r, (-2 * r, 0, -1.45 * r), (2 * r, 0, -1.45 * r)))
     b.part(
@@ -403,79 +372,67 @@ def worm_gear(b: ObjectBuilder, radius: float) -> None:
             beam(0.08 * r, 0.5 * r, (0, 0, 0), (1.02 * r * cos(a), 0, 1.02 * r * sin(a)), Y)
             for a in [6.28318 * k / 24 for k in range(24)]
         ],
-        material="brass",
+        look="brass",
     )
     b.cut("wheel", b.cylinder(0.22 * r, (0, -r, 0), (0, r, 0)))
-    b.spin("wheel", parent="frame", axis=-Y, pivot=(0, 0, 0))
+    b.spin("wheel", "frame", -Y, (0, 0, 0))
     b.part(
         "worm",
         b.cylinder(0.11 * r, (-2 * r, 0, -1.45 * r), (1.5 * r, 0, -1.45 * r)),
         b.cylinder(0.3 * r, (-1.1 * r, 0, -1.45 * r), (1.1 * r, 0, -1.45 * r)),
         [b.torus(0.34 * r, 0.06 * r, (x * r, 0, -1.45 * r), X) for x in (-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9)],
         b.cylinder(0.3 * r, (-2.3 * r, 0, -1.45 * r), (-1.9 * r, 0, -1.45 * r)),
-        material="steel",
+        look="steel",
     )
-    b.spin("worm", parent="frame", axis=X, pivot=(0, 0, -1.45 * r))
-    b.follow("wheel", leader="worm", multiplier=0.04)
+    b.spin("worm", "frame", X, (0, 0, -1.45 * r))
+    b.follow("wheel", "worm", 0.04)
 
 
-@kind(
-    "bevel gears",
-    words="bevel gear, right angle gearbox, angle drive",
-    radius=length(0.03, 0.08),
-)
+@kind(words="bevel gear, right angle gearbox, angle drive", radius=(0.03, 0.08))
 def bevel_gears(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "frame",
-        box((-1.6 * r, -1.2 * r, -2 * r), (1.2 * r, 1.2 * r, -1.8 * r)),
-        box((-1.8 * r, -1.2 * r, -2 * r), (-1.6 * r, 1.2 * r, 0.9 * r)),
-        b.cylinder(0.2 * r, (0, 0, -1.81 * r), (0, 0, -r)),
+        slab((-1.6 * r, 1.2 * r), 1.2 * r, (-2 * r, -1.8 * r)),
+        slab((-1.8 * r, -1.6 * r), 1.2 * r, (-2 * r, 0.9 * r)),
+        b.cylinder(0.2 * r, -1.81 * r, -r),
         b.cylinder(0.2 * r, (-1.61 * r, 0, 0), (-r, 0, 0)),
-        material="steel",
-        color="grey",
+        look="grey steel",
     )
-    b.part(
-        "gear_0",
-        b.cone(0.95 * r, 0.45 * r, (0, 0, -r), (0, 0, -0.5 * r)),
-        b.cylinder(0.35 * r, (0, 0, -1.5 * r), (0, 0, -0.99 * r)),
-        material="brass",
-    )
-    b.cut("gear_0", b.cylinder(0.22 * r, (0, 0, -3 * r), (0, 0, -0.95 * r)))
-    b.spin("gear_0", parent="frame", axis=Z, pivot=(0, 0, 0))
+    b.part("gear_0", b.cone(0.95 * r, 0.45 * r, -r, -0.5 * r), b.cylinder(0.35 * r, -1.5 * r, -0.99 * r), look="brass")
+    b.cut("gear_0", b.cylinder(0.22 * r, -3 * r, -0.95 * r))
+    b.spin("gear_0", "frame", Z, (0, 0, 0))
     b.part(
         "gear_1",
         b.cone(0.95 * r, 0.45 * r, (-r - 0.03 * r, 0, 0), (-0.53 * r, 0, 0)),
         b.cylinder(0.35 * r, (-1.5 * r, 0, 0), (-r, 0, 0)),
-        material="brass",
+        look="brass",
     )
     b.cut("gear_1", b.cylinder(0.22 * r, (-3 * r, 0, 0), (-0.95 * r, 0, 0)))
-    b.spin("gear_1", parent="frame", axis=X, pivot=(0, 0, 0))
-    b.follow("gear_1", leader="gear_0", multiplier=-1)
+    b.spin("gear_1", "frame", X, (0, 0, 0))
+    b.follow("gear_1", "gear_0", -1)
 
 
 @kind(
-    "planetary gear",
     words=(
         "planetary gear set, planetary gearbox, planetary gear train, epicyclic gearbox, epicyclic gear, sun "
         "and planet gear"
     ),
-    radius=length(0.04, 0.1),
+    radius=(0.04, 0.1),
     number=whole(3, 4, words="planet, planet gear"),
 )
 def planetary_gear(b: ObjectBuilder, radius: float, number: int) -> None:
     r = radius
     b.part(
         "ring",
-        b.tube(r, 0.83 * r, (0, 0, 0), (0, 0, 0.25 * r)),
-        b.cylinder(r, (0, 0, -0.08 * r), (0, 0, 0)),
-        b.cylinder(0.07 * r, (0, 0, -0.01 * r), (0, 0, 0.5 * r)),
-        material="steel",
-        color="black",
+        b.tube(r, 0.83 * r, 0, 0.25 * r),
+        b.cylinder(r, -0.08 * r, 0),
+        b.cylinder(0.07 * r, -0.01 * r, 0.5 * r),
+        look="black steel",
     )
     b.part(
         "carrier",
-        b.cylinder(0.7 * r, (0, 0, 0.28 * r), (0, 0, 0.36 * r)),
+        b.cylinder(0.7 * r, 0.28 * r, 0.36 * r),
         [
             b.cylinder(
                 0.07 * r,
@@ -484,64 +441,53 @@ def planetary_gear(b: ObjectBuilder, radius: float, number: int) -> None:
             )
             for a in [6.28318 * k / number for k in range(number)]
         ],
-        material="metal",
-        color="red",
+        look="red metal",
     )
-    b.cut("carrier", b.cylinder(0.085 * r, (0, 0, -1), (0, 0, 1)))
-    b.spin("carrier", parent="ring", axis=Z, pivot=(0, 0, 0))
-    b.part("sun", b.cylinder(0.27 * r, (0, 0, 0.02 * r), (0, 0, 0.25 * r)), material="brass")
-    b.cut("sun", b.cylinder(0.085 * r, (0, 0, -1), (0, 0, 1)))
-    b.spin("sun", parent="ring", axis=Z, pivot=(0, 0, 0))
-    b.follow("sun", leader="carrier", multiplier=4)
+    b.cut("carrier", b.cylinder(0.085 * r, -1, 1))
+    b.spin("carrier", "ring", Z, (0, 0, 0))
+    b.part("sun", b.cylinder(0.27 * r, 0.02 * r, 0.25 * r), look="brass")
+    b.cut("sun", b.cylinder(0.085 * r, -1, 1))
+    b.spin("sun", "ring", Z, (0, 0, 0))
+    b.follow("sun", "carrier", 4)
     for k in range(number):
         a = 6.28318 * k / number
         c = vector(0.55 * r * cos(a), 0.55 * r * sin(a), 0)
-        b.part(f"planet_{k}", b.cylinder(0.26 * r, c + 0.02 * r * Z, c + 0.25 * r * Z), material="brass")
+        b.part(f"planet_{k}", b.cylinder(0.26 * r, c + 0.02 * r * Z, c + 0.25 * r * Z), look="brass")
         b.cut(f"planet_{k}", b.cylinder(0.085 * r, c - Z, c + Z))
-        b.spin(f"planet_{k}", parent="carrier", axis=Z, pivot=c)
-        b.follow(f"planet_{k}", leader="carrier", multiplier=-3)
+        b.spin(f"planet_{k}", "carrier", Z, c)
+        b.follow(f"planet_{k}", "carrier", -3)
 
 
-@kind(
-    "cam and follower",
-    words="cam follower, cam mechanism",
-    radius=length(0.03, 0.06),
-)
+@kind("cam and follower", words="cam follower, cam mechanism", radius=(0.03, 0.06))
 def cam_follower(b: ObjectBuilder, radius: float) -> None:
     """The cam lifts the follower by contact alone, and its weight brings it back; no joint couples them."""
     r = radius
     b.part(
         "frame",
-        box((-2 * r, -0.5 * r, -2 * r), (2 * r, 0.5 * r, -1.8 * r)),
-        [box((-0.4 * r, s * 0.4 * r, -1.81 * r), (0.4 * r, s * 0.6 * r, 0.4 * r)) for s in (-1, 1)],
-        [box((s * 1.8 * r, -0.4 * r, -1.81 * r), (s * 2 * r, 0.4 * r, 3.4 * r)) for s in (-1, 1)],
-        box((-2 * r, -0.4 * r, 3.1 * r), (2 * r, 0.4 * r, 3.4 * r)),
-        material="wood",
+        slab(2 * r, 0.5 * r, (-2 * r, -1.8 * r)),
+        [slab(0.4 * r, (s * 0.4 * r, s * 0.6 * r), (-1.81 * r, 0.4 * r)) for s in (-1, 1)],
+        [slab((s * 1.8 * r, s * 2 * r), 0.4 * r, (-1.81 * r, 3.4 * r)) for s in (-1, 1)],
+        slab(2 * r, 0.4 * r, (3.1 * r, 3.4 * r)),
+        look="wood",
     )
-    b.bore("frame", b.cylinder(0.17 * r, (0, -r, 0), (0, r, 0)), b.cylinder(0.17 * r, (0, 0, 3 * r), (0, 0, 4 * r)))
+    b.bore("frame", b.cylinder(0.17 * r, (0, -r, 0), (0, r, 0)), b.cylinder(0.17 * r, 3 * r, 4 * r))
     b.part(
         "cam",
         b.cylinder(r, (0, -0.25 * r, 0.3 * r), (0, 0.25 * r, 0.3 * r)),
         b.cylinder(0.14 * r, (0, -1.2 * r, 0), (0, 0.7 * r, 0)),
         beam(0.2 * r, 0.15 * r, (0, -1.15 * r, 0), (r, -1.15 * r, 0), Y),
         b.cylinder(0.12 * r, (0.95 * r, -1.8 * r, 0), (0.95 * r, -1.1 * r, 0)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.spin("cam", parent="frame", axis=-Y, pivot=(0, 0, 0))
-    b.part(
-        "follower",
-        b.cylinder(0.5 * r, (0, 0, 1.33 * r), (0, 0, 1.5 * r)),
-        b.cylinder(0.14 * r, (0, 0, 1.4 * r), (0, 0, 4.2 * r)),
-        material="metal",
-    )
-    b.slide("follower", parent="frame", axis=Z, upper=0.9 * r)
+    b.spin("cam", "frame", -Y, (0, 0, 0))
+    b.part("follower", b.cylinder(0.5 * r, 1.33 * r, 1.5 * r), b.cylinder(0.14 * r, 1.4 * r, 4.2 * r), look="metal")
+    b.slide("follower", "frame", Z, 0.9 * r)
 
 
 @kind(
     "ratchet and pawl",
     words="ratchet wheel, ratchet mechanism",
-    radius=length(0.03, 0.09),
+    radius=(0.03, 0.09),
     number=whole(8, 16, words="tooth, teeth"),
 )
 def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
@@ -552,8 +498,7 @@ def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
         box((-1.3 * r, 0.03 * r, -1.3 * r), (1.5 * r, 0.2 * r, 1.9 * r)),
         b.cylinder(0.15 * r, (0, -0.5 * r, 0), (0, 0.05 * r, 0)),
         b.cylinder(0.08 * r, (0.9 * r, -0.4 * r, 1.3 * r), (0.9 * r, 0.05 * r, 1.3 * r)),
-        material="steel",
-        color="grey",
+        look="grey steel",
     )
     b.part(
         "wheel",
@@ -571,34 +516,29 @@ def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
             )
             for a in [6.28318 * k / number for k in range(number)]
         ],
-        material="brass",
+        look="brass",
     )
     b.cut("wheel", b.cylinder(0.17 * r, (0, -r, 0), (0, r, 0)))
-    b.spin("wheel", parent="plate", axis=Y, pivot=(0, 0, 0))
+    b.spin("wheel", "plate", Y, (0, 0, 0))
     b.part(
         "pawl",
         beam(0.14 * r, 0.2 * r, (0.9 * r, -0.15 * r, 1.3 * r), (0.1 * r, -0.15 * r, 1.25 * r), Y),
         b.cylinder(0.16 * r, (0.9 * r, -0.25 * r, 1.3 * r), (0.9 * r, -0.05 * r, 1.3 * r)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.cut("pawl", b.cylinder(0.095 * r, (0.9 * r, -1, 1.3 * r), (0.9 * r, 1, 1.3 * r)))
-    b.hinge("pawl", parent="plate", axis=Y, pivot=(0.9 * r, 0, 1.3 * r), upper=0.6, lower=-0.03)
+    b.hinge("pawl", "plate", Y, (0.9 * r, 0, 1.3 * r), 0.6, lower=-0.03)
 
 
-@kind(
-    "universal joint",
-    words="cardan joint, u joint, hooke joint",
-    radius=length(0.015, 0.05),
-)
+@kind(words="cardan joint, u joint, hooke joint", radius=(0.015, 0.05))
 def universal_joint(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "yoke_0",
-        b.cylinder(0.5 * r, (0, 0, -5 * r), (0, 0, -2 * r)),
-        box((-1.4 * r, -0.5 * r, -2.3 * r), (1.4 * r, 0.5 * r, -2 * r)),
-        [box((s * 1.1 * r, -0.5 * r, -2.1 * r), (s * 1.4 * r, 0.5 * r, 0.5 * r)) for s in (-1, 1)],
-        material="steel",
+        b.cylinder(0.5 * r, -5 * r, -2 * r),
+        slab(1.4 * r, 0.5 * r, (-2.3 * r, -2 * r)),
+        [slab((s * 1.1 * r, s * 1.4 * r), 0.5 * r, (-2.1 * r, 0.5 * r)) for s in (-1, 1)],
+        look="steel",
     )
     b.bore("yoke_0", b.cylinder(0.24 * r, (-2 * r, 0, 0), (2 * r, 0, 0)))
     b.part(
@@ -606,34 +546,28 @@ def universal_joint(b: ObjectBuilder, radius: float) -> None:
         b.cylinder(0.2 * r, (-1.4 * r, 0, 0), (1.4 * r, 0, 0)),
         b.cylinder(0.2 * r, (0, -1.4 * r, 0), (0, 1.4 * r, 0)),
         ball(0.45 * r, (0, 0, 0)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.hinge("cross", parent="yoke_0", axis=X, pivot=(0, 0, 0), upper=0.6, lower=-0.6)
+    b.hinge("cross", "yoke_0", X, (0, 0, 0), 0.6, lower=-0.6)
     b.part(
         "yoke_1",
-        b.cylinder(0.5 * r, (0, 0, 2 * r), (0, 0, 5 * r)),
-        box((-0.5 * r, -1.4 * r, 2 * r), (0.5 * r, 1.4 * r, 2.3 * r)),
-        [box((-0.5 * r, s * 1.1 * r, -0.5 * r), (0.5 * r, s * 1.4 * r, 2.1 * r)) for s in (-1, 1)],
-        material="steel",
+        b.cylinder(0.5 * r, 2 * r, 5 * r),
+        slab(0.5 * r, 1.4 * r, (2 * r, 2.3 * r)),
+        [slab(0.5 * r, (s * 1.1 * r, s * 1.4 * r), (-0.5 * r, 2.1 * r)) for s in (-1, 1)],
+        look="steel",
     )
     b.cut("yoke_1", b.cylinder(0.24 * r, (0, -2 * r, 0), (0, 2 * r, 0)))
-    b.hinge("yoke_1", parent="cross", axis=Y, pivot=(0, 0, 0), upper=0.6, lower=-0.6)
+    b.hinge("yoke_1", "cross", Y, (0, 0, 0), 0.6, lower=-0.6)
 
 
-@kind(
-    "double pendulum",
-    words="chaos pendulum",
-    number=whole(1, 3, words="arm, link, pendulum, bob"),
-    length=length(0.15, 0.4),
-)
+@kind(words="chaos pendulum", number=whole(1, 3, words="arm, link, pendulum, bob"), length=(0.15, 0.4))
 def double_pendulum(b: ObjectBuilder, number: int, length: float) -> None:
     b.part(
         "stand",
-        box((-0.15, -0.1, 0), (0.15, 0.1, 0.02)),
-        box((-0.02, 0.01, 0.01), (0.02, 0.05, 0.1 + (number + 0.3) * length)),
+        slab(0.15, 0.1, (0, 0.02)),
+        slab(0.02, (0.01, 0.05), (0.01, 0.1 + (number + 0.3) * length)),
         b.cylinder(0.006, (0, -0.011, 0.08 + (number + 0.2) * length), (0, 0.02, 0.08 + (number + 0.2) * length)),
-        material="wood",
+        look="wood",
     )
     parent = "stand"
     for k in range(number):
@@ -643,53 +577,43 @@ def double_pendulum(b: ObjectBuilder, number: int, length: float) -> None:
             f"arm_{k}",
             beam(0.025, 0.008, (0, y, z), (0, y, z - length), Y),
             [b.cylinder(0.018, (0, y - 0.004, q), (0, y + 0.004, q)) for q in (z, z - length)],
-            material="metal",
-            color="red",
+            look="red metal",
         )
         b.cut(f"arm_{k}", b.cylinder(0.0075, (0, y - 0.01, z), (0, y + 0.01, z)))
         if k < number - 1:
             b.part(f"arm_{k}", b.cylinder(0.006, (0, y - 0.02, z - length), (0, y, z - length)))
-        b.spin(f"arm_{k}", parent=parent, axis=Y, pivot=(0, y, z))
+        b.spin(f"arm_{k}", parent, Y, (0, y, z))
         parent = f"arm_{k}"
 
 
-@kind(
-    "cart pole",
-    words="inverted pendulum, cart and pole, pendulum on a cart",
-    length=length(0.8, 1.6),
-)
+@kind(words="inverted pendulum, cart and pole, pendulum on a cart", length=(0.8, 1.6))
 def cart_pole(b: ObjectBuilder, length: float) -> None:
     b.part(
         "rail",
-        box((-length / 2, -0.03, 0), (length / 2, 0.03, 0.03)),
-        [box((s * length / 2, -0.06, 0), (s * (length / 2 - 0.02), 0.06, 0.1)) for s in (-1, 1)],
-        material="metal",
+        slab(length / 2, 0.03, (0, 0.03)),
+        [slab((s * length / 2, s * (length / 2 - 0.02)), 0.06, (0, 0.1)) for s in (-1, 1)],
+        look="metal",
     )
     b.part(
         "cart",
-        box((-0.08, -0.05, 0.031), (0.08, 0.05, 0.1)),
-        [box((-0.08, s * 0.05, 0.005), (0.08, s * 0.032, 0.05)) for s in (-1, 1)],
+        slab(0.08, 0.05, (0.031, 0.1)),
+        [slab(0.08, (s * 0.05, s * 0.032), (0.005, 0.05)) for s in (-1, 1)],
         b.cylinder(0.008, (0, -0.08, 0.08), (0, 0, 0.08)),
-        color="blue",
+        look="blue",
     )
-    b.slide("cart", parent="rail", axis=X, upper=length / 2 - 0.11, lower=-length / 2 + 0.11)
+    b.slide("cart", "rail", X, length / 2 - 0.11, lower=-length / 2 + 0.11)
     b.part(
         "pole",
         beam(0.025, 0.012, (0, -0.066, 0.08), (0, -0.066, 0.6), Y),
         b.cylinder(0.02, (0, -0.072, 0.08), (0, -0.06, 0.08)),
         b.cylinder(0.03, (0, -0.08, 0.62), (0, -0.052, 0.62)),
-        material="metal",
-        color="red",
+        look="red metal",
     )
     b.cut("pole", b.cylinder(0.0095, (0, -1, 0.08), (0, 1, 0.08)))
-    b.hinge("pole", parent="cart", axis=Y, pivot=(0, 0, 0.08), upper=1.5, lower=-1.5)
+    b.hinge("pole", "cart", Y, (0, 0, 0.08), 1.5, lower=-1.5)
 
 
-@kind(
-    "furuta pendulum",
-    words="rotary pendulum, rotary inverted pendulum",
-    size=length(0.8, 1.3),
-)
+@kind(words="rotary pendulum, rotary inverted pendulum", size=(0.8, 1.3))
 def furuta_pendulum(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -697,55 +621,51 @@ def furuta_pendulum(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.08 * size, p(0, 0, 0), p(0, 0, 0.02)),
         b.cylinder(0.03 * size, p(0, 0, 0.01), p(0, 0, 0.3)),
         b.cylinder(0.01 * size, p(0, 0, 0.29), p(0, 0, 0.34)),
-        material="metal",
+        look="metal",
     )
     b.part(
         "arm",
         b.tube(0.025 * size, 0.0125 * size, p(0, 0, 0.305), p(0, 0, 0.335)),
         beam(0.016 * size, 0.016 * size, p(0.015, 0, 0.32), p(0.18, 0, 0.32)),
         b.cylinder(0.006 * size, p(0.17, 0, 0.32), p(0.22, 0, 0.32)),
-        material="metal",
-        color="red",
+        look="red metal",
     )
-    b.spin("arm", parent="base", axis=Z, pivot=p(0, 0, 0))
+    b.spin("arm", "base", Z, p(0, 0, 0))
     b.part(
         "pendulum",
         beam(0.012 * size, 0.008 * size, p(0.21, 0, 0.32), p(0.21, 0, 0.1), X),
         b.cylinder(0.013 * size, p(0.202, 0, 0.32), p(0.218, 0, 0.32)),
         b.cylinder(0.022 * size, p(0.2, 0, 0.09), p(0.22, 0, 0.09)),
-        material="metal",
-        color="blue",
+        look="blue metal",
     )
     b.cut("pendulum", b.cylinder(0.0078 * size, p(0, 0, 0.32), p(1, 0, 0.32)))
-    b.spin("pendulum", parent="arm", axis=X, pivot=p(0, 0, 0.32))
+    b.spin("pendulum", "arm", X, p(0, 0, 0.32))
 
 
 @kind(
-    "ball and plate",
     words="tilting plate, labyrinth game, marble labyrinth, tilting maze, gimbal table, two axis gimbal",
-    width=length(0.25, 0.45),
+    width=(0.25, 0.45),
 )
 def ball_and_plate(b: ObjectBuilder, width: float) -> None:
     w = width / 2
-    b.part("case", box((-w - 0.06, -w - 0.06, 0), (w + 0.06, w + 0.06, 0.1)), material="wood")
-    b.cut("case", box((-w - 0.045, -w - 0.045, 0.01), (w + 0.045, w + 0.045, 1)))
+    b.part("case", slab(w + 0.06, w + 0.06, (0, 0.1)), look="wood")
+    b.cut("case", slab(w + 0.045, w + 0.045, (0.01, 1)))
     b.bore("case", b.cylinder(0.0075, (-1, 0, 0.08), (1, 0, 0.08)))
     b.part(
         "frame",
-        box((-w - 0.03, -w - 0.03, 0.07), (w + 0.03, w + 0.03, 0.09)),
+        slab(w + 0.03, w + 0.03, (0.07, 0.09)),
         [b.cylinder(0.006, (s * (w + 0.025), 0, 0.08), (s * (w + 0.09), 0, 0.08)) for s in (-1, 1)],
         b.cylinder(0.02, (w + 0.075, 0, 0.08), (w + 0.095, 0, 0.08)),
-        material="wood",
-        color="brown",
+        look="brown wood",
     )
-    b.cut("frame", box((-w - 0.012, -w - 0.012, 0), (w + 0.012, w + 0.012, 1)))
+    b.cut("frame", slab(w + 0.012, w + 0.012, (0, 1)))
     b.bore("frame", b.cylinder(0.0075, (0, -w - 0.025, 0.08), (0, w + 0.025, 0.08)))
-    b.hinge("frame", parent="case", axis=X, pivot=(0, 0, 0.08), upper=0.12, lower=-0.12)
+    b.hinge("frame", "case", X, (0, 0, 0.08), 0.12, lower=-0.12)
     b.part(
         "plate",
-        box((-w, -w, 0.074), (w, w, 0.086)),
+        slab(w, w, (0.074, 0.086)),
         [b.cylinder(0.006, (0, s * (w - 0.005), 0.08), (0, s * (w + 0.023), 0.08)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     b.part(
         "plate",
@@ -754,47 +674,38 @@ def ball_and_plate(b: ObjectBuilder, width: float) -> None:
             for k in (1, 2, 3)
         ],
     )
-    b.hinge("plate", parent="frame", axis=Y, pivot=(0, 0, 0.08), upper=0.12, lower=-0.12)
+    b.hinge("plate", "frame", Y, (0, 0, 0.08), 0.12, lower=-0.12)
 
 
-@kind(
-    "centrifugal governor",
-    words="flyball governor, watt governor",
-    size=length(0.8, 1.3),
-)
+@kind(words="flyball governor, watt governor", size=(0.8, 1.3))
 def centrifugal_governor(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "base",
         b.cylinder(0.1 * size, p(0, 0, 0), p(0, 0, 0.03)),
         b.cylinder(0.012 * size, p(0, 0, 0.02), p(0, 0, 0.08)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
     b.part(
         "spindle",
         b.cylinder(0.02 * size, p(0, 0, 0.081), p(0, 0, 0.1)),
         b.cylinder(0.009 * size, p(0, 0, 0.09), p(0, 0, 0.4)),
         [box(p(-0.008, s * 0.006, 0.36), p(0.008, s * 0.03, 0.38)) for s in (-1, 1)],
-        material="brass",
+        look="brass",
     )
     b.cut("spindle", [box(p(-0.0045, s * 0.015, 0.3), p(0.0045, s * 0.05, 0.4)) for s in (-1, 1)])
-    b.spin("spindle", parent="base", axis=Z, pivot=p(0, 0, 0))
+    b.spin("spindle", "base", Z, p(0, 0, 0))
     for k, s in enumerate((-1, 1)):
         b.part(
             f"arm_{k}",
             beam(0.007 * size, 0.007 * size, p(0, s * 0.025, 0.37), p(0, s * 0.1, 0.22), X),
             ball(0.025 * size, p(0, s * 0.105, 0.21)),
-            material="brass",
+            look="brass",
         )
-        b.hinge(f"arm_{k}", parent="spindle", axis=s * X, pivot=p(0, s * 0.025, 0.37), upper=0.6, lower=-0.1)
+        b.hinge(f"arm_{k}", "spindle", s * X, p(0, s * 0.025, 0.37), 0.6, lower=-0.1)
 
 
-@kind(
-    "belt drive",
-    words="pulley and belt, timing belt drive, chain drive, two pulleys",
-    radius=length(0.04, 0.12),
-)
+@kind(words="pulley and belt, timing belt drive, chain drive, two pulleys", radius=(0.04, 0.12))
 def belt_drive(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -802,8 +713,7 @@ def belt_drive(b: ObjectBuilder, radius: float) -> None:
         box((-1.4 * r, 0, -1.8 * r), (4.5 * r, 0.2 * r, -1.4 * r)),
         [box((x - 0.2 * r, 0, -1.5 * r), (x + 0.2 * r, 0.2 * r, 0.25 * r)) for x in (0, 3.4 * r)],
         [b.cylinder(0.15 * r, (x, -0.7 * r, 0), (x, 0.05 * r, 0)) for x in (0, 3.4 * r)],
-        material="steel",
-        color="grey",
+        look="grey steel",
     )
     for name, x, q in (("pulley_0", 0, r), ("pulley_1", 3.4 * r, 0.6 * r)):
         b.part(
@@ -811,50 +721,44 @@ def belt_drive(b: ObjectBuilder, radius: float) -> None:
             b.cylinder(q, (x, -0.15 * r, 0), (x, -0.03 * r, 0)),
             b.cylinder(0.9 * q, (x, -0.45 * r, 0), (x, -0.1 * r, 0)),
             b.cylinder(q, (x, -0.55 * r, 0), (x, -0.43 * r, 0)),
-            material="metal",
-            color=f"{'red' if x == 0 else 'blue'}",
+            look=("metal", f"{'red' if x == 0 else 'blue'}"),
         )
         b.cut(name, b.cylinder(0.17 * r, (x, -1, 0), (x, 1, 0)))
-        b.spin(name, parent="frame", axis=-Y, pivot=(x, 0, 0))
-    b.follow("pulley_1", leader="pulley_0", multiplier=1.667)
+        b.spin(name, "frame", -Y, (x, 0, 0))
+    b.follow("pulley_1", "pulley_0", 1.667)
 
 
 @kind(
-    "lead screw",
     words="leadscrew, ball screw, linear screw drive, screw drive, linear actuator stage, spindle drive",
-    length=length(0.25, 0.7),
+    length=(0.25, 0.7),
 )
 def lead_screw(b: ObjectBuilder, length: float) -> None:
     L = length / 2
     b.part(
         "base",
-        box((-L, -0.05, 0), (L, 0.05, 0.02)),
-        [box((s * L, -0.05, 0.01), (s * (L - 0.02), 0.05, 0.08)) for s in (-1, 1)],
+        slab(L, 0.05, (0, 0.02)),
+        [slab((s * L, s * (L - 0.02)), 0.05, (0.01, 0.08)) for s in (-1, 1)],
         [b.cylinder(0.006, (-L + 0.01, y, 0.05), (L - 0.01, y, 0.05)) for y in (-0.035, 0.035)],
-        material="metal",
+        look="metal",
     )
     b.bore("base", b.cylinder(0.0085, (-1, 0, 0.05), (1, 0, 0.05)))
     b.part(
         "screw",
         b.cylinder(0.007, (-L - 0.03, 0, 0.05), (L + 0.005, 0, 0.05)),
         b.cylinder(0.018, (-L - 0.05, 0, 0.05), (-L - 0.025, 0, 0.05)),
-        material="steel",
+        look="steel",
     )
-    b.spin("screw", parent="base", axis=X, pivot=(0, 0, 0.05))
-    b.part("nut", box((-L + 0.05, -0.048, 0.03), (-L + 0.11, 0.048, 0.085)), material="metal", color="black")
+    b.spin("screw", "base", X, (0, 0, 0.05))
+    b.part("nut", slab((-L + 0.05, -L + 0.11), 0.048, (0.03, 0.085)), look="black metal")
     b.cut(
         "nut",
         b.cylinder(0.0085, (-1, 0, 0.05), (1, 0, 0.05)),
         [b.cylinder(0.0075, (-1, y, 0.05), (1, y, 0.05)) for y in (-0.035, 0.035)],
     )
-    b.slide("nut", parent="base", axis=X, upper=2 * L - 0.17)
+    b.slide("nut", "base", X, 2 * L - 0.17)
 
 
-@kind(
-    "pump jack",
-    words="oil pump jack, oil pump, nodding donkey",
-    size=length(0.5, 1.5),
-)
+@kind(words="oil pump jack, oil pump, nodding donkey", size=(0.5, 1.5))
 def pump_jack(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -867,8 +771,7 @@ def pump_jack(b: ObjectBuilder, size: float) -> None:
         ],
         [box(p(-0.07, s * 0.09, 1.42), p(0.07, s * 0.15, 1.6)) for s in (-1, 1)],
         box(p(0.7, -0.15, 0.09), p(1.2, 0.15, 0.6)),
-        material="steel",
-        color="blue",
+        look="blue steel",
     )
     b.part(
         "beam",
@@ -885,10 +788,9 @@ def pump_jack(b: ObjectBuilder, size: float) -> None:
             0.14 * size,
             "y",
         ),
-        material="steel",
-        color="yellow",
+        look="yellow steel",
     )
-    b.hinge("beam", parent="base", axis=Y, pivot=p(0, 0, 1.5), upper=0.25, lower=-0.25)
+    b.hinge("beam", "base", Y, p(0, 0, 1.5), 0.25, lower=-0.25)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"crank_{k}",
@@ -896,8 +798,7 @@ def pump_jack(b: ObjectBuilder, size: float) -> None:
             box(p(0.87, s * 0.16, 0.14), p(1.03, s * 0.22, 0.5))
             if k < 0
             else beam(0.14 * size, 0.06 * size, p(0.95, s * 0.19, 0.45), p(0.95, s * 0.19, 0.76), Y),
-            material="steel",
-            color="black",
+            look="black steel",
         )
-        b.spin(f"crank_{k}", parent="base", axis=Y, pivot=p(0.95, 0, 0.45))
-    b.follow("crank_1", leader="crank_0", multiplier=1)
+        b.spin(f"crank_{k}", "base", Y, p(0.95, 0, 0.45))
+    b.follow("crank_1", "crank_0", 1)

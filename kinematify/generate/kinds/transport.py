@@ -5,20 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length
+from kinematify.generate.library.kind import kind
 from kinematify.generate.library.mechanisms import wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, scaled, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, scaled, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "train wagon",
-    walls=150,
-    words="freight car, box wagon, railway wagon, goods wagon, cattle car",
-)
+@kind(walls=150, words="freight car, box wagon, railway wagon, goods wagon, cattle car")
 def train_wagon(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
     p = scaled(size)
@@ -27,33 +23,28 @@ def train_wagon(b: ObjectBuilder) -> None:
         box(p(-3, -1.2, 1), p(3, 1.2, 3.2)),
         [box(p(x - 0.9, -0.6, 0.5), p(x + 0.9, 0.6, 1.01)) for x in (-1.8, 1.8)],
         [box(p(-1.4, s * 1.2, z), p(2.9, s * 1.32, z + 0.05)) for s in (-1, 1) for z in (0.98, 3.05)],
-        material="steel",
-        color="brown",
+        look="brown steel",
     )
     b.cut("body", box(p(-2.95, -1.15, 1.05), p(2.95, 1.15, 3.15)), box(p(-0.8, -2, 1.1), p(0.8, 2, 3)))
     for k, s in enumerate((-1, 1)):
-        b.part(f"door_{k}", box(p(-0.9, s * 1.21, 1.04), p(0.9, s * 1.28, 3.04)), material="steel", color="dark red")
-        b.slide(f"door_{k}", parent="body", axis=X, upper=1.9 * size)
+        b.part(f"door_{k}", box(p(-0.9, s * 1.21, 1.04), p(0.9, s * 1.28, 3.04)), look="dark red steel")
+        b.slide(f"door_{k}", "body", X, 1.9 * size)
     for i, x in enumerate((-2.3, -1.3, 1.3, 2.3)):
         for s, side in ((-1, "right"), (1, "left")):
             wheel(
                 b,
                 f"wheel_{i}_{side}",
-                parent="body",
-                middle=p(x, s * 0.72, 0.45),
-                radius=0.45 * size,
-                wide=0.12 * size,
-                out=s * Y,
+                "body",
+                p(x, s * 0.72, 0.45),
+                0.45 * size,
+                0.12 * size,
+                s * Y,
                 axle=0.05 * size,
                 material="steel",
             )
 
 
-@kind(
-    "cable car",
-    walls=30,
-    words="gondola lift, ski lift, cable car cabin, funicular cabin",
-)
+@kind(walls=30, words="gondola lift, ski lift, cable car cabin, funicular cabin")
 def cable_car(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
     p = scaled(size)
@@ -61,23 +52,21 @@ def cable_car(b: ObjectBuilder) -> None:
         "rope",
         b.cylinder(0.03 * size, p(-3, 0, 3.6), p(3, 0, 3.6)),
         [box(p(s * 3 - 0.15, -0.2, 0), p(s * 3 + 0.15, 0.2, 3.8)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
     b.part(
         "trolley",
         box(p(-0.5, -0.2, 3.64), p(0.5, 0.2, 3.8)),
         box(p(-0.06, -0.3, 3.2), p(0.06, -0.2, 3.8)),
         box(p(-0.06, -0.3, 3.2), p(0.06, 0, 3.3)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.slide("trolley", parent="rope", axis=X, upper=1.6 * size, lower=-1.6 * size)
+    b.slide("trolley", "rope", X, 1.6 * size, lower=-1.6 * size)
     b.part(
         "cabin",
         box(p(-0.7, -0.6, 0.6), p(0.7, 0.6, 2.4)),
         box(p(-0.05, -0.05, 2.39), p(0.05, 0.05, 3.18)),
-        material="metal",
-        color="red",
+        look="red metal",
     )
     b.cut(
         "cabin",
@@ -85,16 +74,12 @@ def cable_car(b: ObjectBuilder) -> None:
         box(p(-0.6, -1, 1.3), p(0.6, 1, 2.2)),
         box(p(-0.3, -1, 0.7), p(0.3, 0, 2.3)),
     )
-    b.hinge("cabin", parent="trolley", axis=Y, pivot=p(0, 0, 3.2), upper=0.2, lower=-0.2)
-    b.part("door", box(p(-0.34, -0.65, 0.68), p(0.34, -0.61, 2.32)), material="glass")
-    b.slide("door", parent="cabin", axis=X, upper=0.33 * size)
+    b.hinge("cabin", "trolley", Y, p(0, 0, 3.2), 0.2, lower=-0.2)
+    b.part("door", box(p(-0.34, -0.65, 0.68), p(0.34, -0.61, 2.32)), look="glass")
+    b.slide("door", "cabin", X, 0.33 * size)
 
 
-@kind(
-    "horse carriage",
-    walls=20,
-    words="carriage, stagecoach",
-)
+@kind(walls=20, words="carriage, stagecoach")
 def horse_carriage(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.15)
     p = scaled(size)
@@ -103,8 +88,7 @@ def horse_carriage(b: ObjectBuilder) -> None:
         box(p(-0.8, -0.6, 0.8), p(0.8, 0.6, 2)),
         box(p(-0.5, -0.65, 0.55), p(0.5, 0.65, 0.8)),
         [box(p(0.79, s * 0.3, 0.7), p(1, s * 0.25, 0.9)) for s in (-1, 1)],
-        material="wood",
-        color="dark red",
+        look="dark red wood",
     )
     b.cut(
         "body",
@@ -112,16 +96,16 @@ def horse_carriage(b: ObjectBuilder) -> None:
         box(p(-0.3, -1, 0.9), p(0.3, 0, 1.9)),
         box(p(-0.6, 0, 1.3), p(0.6, 1, 1.8)),
     )
-    leaf(b, "door", parent="body", lower=p(-0.31, -0.63, 0.88), upper=p(0.31, -0.601, 1.92), hinge=X, out=-Y, reach=0.7)
+    leaf(b, "door", "body", p(-0.31, -0.63, 0.88), p(0.31, -0.601, 1.92), hinge=X, out=-Y, reach=0.7)
     for i, (x, s) in enumerate([(x, s) for x in (-0.55, 0.55) for s in (-1, 1)]):
         wheel(
             b,
             f"wheel_{i}",
-            parent="body",
-            middle=p(x, s * 0.73, 0.5),
-            radius=0.37 * size,
-            wide=0.06 * size,
-            out=s * Y,
+            "body",
+            p(x, s * 0.73, 0.5),
+            0.37 * size,
+            0.06 * size,
+            s * Y,
             axle=0.05 * size,
             material="wood",
         )
@@ -129,16 +113,12 @@ def horse_carriage(b: ObjectBuilder) -> None:
         "shaft",
         beam(0.06 * size, 0.06 * size, p(0.92, -0, 0.8), p(2.4, 0, 0.8)),
         box(p(0.88, -0.24, 0.76), p(0.96, 0.24, 0.84)),
-        material="wood",
+        look="wood",
     )
-    b.hinge("shaft", parent="body", axis=-Y, pivot=p(0.92, 0, 0.8), upper=0.4, lower=-0.2)
+    b.hinge("shaft", "body", -Y, p(0.92, 0, 0.8), 0.4, lower=-0.2)
 
 
-@kind(
-    "snowmobile",
-    walls=40,
-    words="snow scooter",
-)
+@kind(walls=40, words="snow scooter")
 def snowmobile(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.15)
     p = scaled(size)
@@ -159,7 +139,7 @@ def snowmobile(b: ObjectBuilder) -> None:
         ),
         box(p(-1.2, -0.2, 0), p(0.2, 0.2, 0.16)),
         [box(p(0.55, s * 0.24, 0.18), p(0.75, s * 0.4, 0.26)) for s in (-1, 1)],
-        color="orange",
+        look="orange",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
@@ -167,27 +147,21 @@ def snowmobile(b: ObjectBuilder) -> None:
             b.cylinder(0.03 * size, p(0.65, s * 0.35, 0.06), p(0.65, s * 0.35, 0.178)),
             box(p(0.2, s * 0.35 - 0.06, 0), p(1.2, s * 0.35 + 0.06, 0.04)),
             b.cylinder(0.05 * size, p(0.65, s * 0.35, 0.03), p(0.65, s * 0.35, 0.08)),
-            material="metal",
-            color="black",
+            look="black metal",
         )
-        b.hinge(f"ski_{k}", parent="body", axis=Z, pivot=p(0.65, s * 0.35, 0), upper=0.4, lower=-0.4)
+        b.hinge(f"ski_{k}", "body", Z, p(0.65, s * 0.35, 0), 0.4, lower=-0.4)
     b.part("body", b.cylinder(0.04 * size, p(0.3, 0, 0.7), p(0.3, 0, 0.82)))
     b.part(
         "handlebar",
         b.cylinder(0.05 * size, p(0.3, 0, 0.822), p(0.3, 0, 0.88)),
         b.rod(0.025 * size, p(0.2, -0.35, 0.92), p(0.2, 0.35, 0.92)),
         beam(0.05 * size, 0.05 * size, p(0.3, 0, 0.86), p(0.19, 0, 0.92)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.hinge("handlebar", parent="body", axis=Z, pivot=p(0.3, 0, 0), upper=0.6, lower=-0.6)
+    b.hinge("handlebar", "body", Z, p(0.3, 0, 0), 0.6, lower=-0.6)
 
 
-@kind(
-    "go kart",
-    walls=20,
-    words="gokart, go-kart, pedal car, soap box, soapbox car",
-)
+@kind(walls=20, words="gokart, go-kart, pedal car, soap box, soapbox car")
 def go_kart(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.2)
     p = scaled(size)
@@ -199,8 +173,7 @@ def go_kart(b: ObjectBuilder) -> None:
         box(p(-0.3, -0.2, 0.12), p(0.1, 0.2, 0.2)),
         beam(0.36 * size, 0.06 * size, p(-0.28, 0, 0.15), p(-0.45, 0, 0.6), X),
         beam(0.04 * size, 0.04 * size, p(0.6, 0, 0.12), p(0.3, 0, 0.45)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     up = vector(-0.673, 0, 0.74)
     b.part(
@@ -208,27 +181,14 @@ def go_kart(b: ObjectBuilder) -> None:
         b.torus(0.14 * size, 0.014 * size, p(0.29, 0, 0.5), up),
         [beam(0.02 * size, 0.015 * size, p(0.29, 0, 0.5), p(0.29, 0, 0.5) + 0.14 * size * v, up) for v in (Y, -Y)],
         b.cylinder(0.02 * size, p(0.29, 0, 0.5) - 0.035 * size * up, p(0.29, 0, 0.5) + 0.01 * size * up),
-        material="rubber",
+        look="rubber",
     )
-    b.hinge("steering_wheel", parent="frame", axis=up, pivot=p(0.29, 0, 0.5), upper=1.2, lower=-1.2)
+    b.hinge("steering_wheel", "frame", up, p(0.29, 0, 0.5), 1.2, lower=-1.2)
     for i, (x, s) in enumerate([(x, s) for x in (-0.6, 0.55) for s in (-1, 1)]):
-        wheel(
-            b,
-            f"wheel_{i}",
-            parent="frame",
-            middle=p(x, s * 0.53, 0.14),
-            radius=0.14 * size,
-            wide=0.12 * size,
-            out=s * Y,
-            axle=0.02 * size,
-        )
+        wheel(b, f"wheel_{i}", "frame", p(x, s * 0.53, 0.14), 0.14 * size, 0.12 * size, s * Y, axle=0.02 * size)
 
 
-@kind(
-    "cement truck",
-    walls=110,
-    words="concrete truck, mixer truck",
-)
+@kind(walls=110, words="concrete truck, mixer truck")
 def cement_truck(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
     p = scaled(size)
@@ -240,8 +200,7 @@ def cement_truck(b: ObjectBuilder) -> None:
         box(p(1.48, -0.3, 1.5), p(1.75, 0.3, 2.3)),
         box(p(-3.4, -0.7, 1), p(-3.1, 0.7, 2.9)),
         [box(p(x - 0.2, -0.85, 0.5), p(x + 0.2, 0.85, 0.85)) for x in (-2.2, -1, 2.7)],
-        material="steel",
-        color="white",
+        look="white steel",
     )
     b.cut("truck", box(p(2.05, -1.1, 1.1), p(3.55, 1.1, 2.85)), box(p(-2.5, -2, 1.2), p(-2.1, 2, 3)))
     b.part(
@@ -249,42 +208,27 @@ def cement_truck(b: ObjectBuilder) -> None:
         b.cone(0.6 * size, 1.1 * size, p(1.42, 0, 2.2), p(0.3, 0, 2.3)),
         b.cylinder(1.1 * size, p(0.31, 0, 2.3), p(-0.6, 0, 2.3)),
         b.cone(1.1 * size, 0.45 * size, p(-0.59, 0, 2.3), p(-2.6, 0, 2.3)),
-        material="steel",
-        color="grey",
+        look="grey steel",
     )
     b.cut(
         "drum",
         b.cylinder(0.4 * size, p(-3, 0, 2.3), p(0.8, 0, 2.3)),
         b.cylinder(1.02 * size, p(-0.5, 0, 2.3), p(0.2, 0, 2.3)),
     )
-    b.spin("drum", parent="truck", axis=X, pivot=p(0, 0, 2.3))
+    b.spin("drum", "truck", X, p(0, 0, 2.3))
     b.part(
         "chute",
         b.cylinder(0.06 * size, p(-3.55, 0, 1.3), p(-3.55, 0, 1.7)),
         beam(0.3 * size, 0.05 * size, p(-3.55, 0, 1.68), p(-4.8, 0, 1.2)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
     b.part("truck", box(p(-3.6, -0.1, 1.1), p(-3.35, 0.1, 1.27)))
-    b.hinge("chute", parent="truck", axis=Z, pivot=p(-3.55, 0, 0), upper=1.2, lower=-1.2)
+    b.hinge("chute", "truck", Z, p(-3.55, 0, 0), 1.2, lower=-1.2)
     for i, (x, s) in enumerate([(x, s) for x in (-2.2, -1, 2.7) for s in (-1, 1)]):
-        wheel(
-            b,
-            f"wheel_{i}",
-            parent="truck",
-            middle=p(x, s * 1.02, 0.5),
-            radius=0.5 * size,
-            wide=0.3 * size,
-            out=s * Y,
-            axle=0.02 * size,
-        )
+        wheel(b, f"wheel_{i}", "truck", p(x, s * 1.02, 0.5), 0.5 * size, 0.3 * size, s * Y, axle=0.02 * size)
 
 
-@kind(
-    "ladder truck",
-    walls=110,
-    words="turntable ladder, aerial ladder, fire engine with ladder",
-)
+@kind(walls=110, words="turntable ladder, aerial ladder, fire engine with ladder")
 def ladder_truck(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
     p = scaled(size)
@@ -293,50 +237,35 @@ def ladder_truck(b: ObjectBuilder) -> None:
         box(p(-3.2, -1.1, 0.6), p(1.6, 1.1, 1.3)),
         box(p(1.7, -1.15, 0.6), p(3.2, 1.15, 1.8)),
         box(p(1.5, -0.5, 0.6), p(1.8, 0.5, 1)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.cut("truck", box(p(-3.1, -1.05, 0.9), p(1.5, 1.05, 1.22)), box(p(1.78, -1.08, 0.68), p(3.12, 1.08, 1.72)))
     b.part(
         "turntable",
         b.cylinder(0.8 * size, p(-2, 0, 1.302), p(-2, 0, 1.5)),
         [box(p(-2.4, s * 0.5, 1.45), p(-1.9, s * 0.4, 2.1)) for s in (-1, 1)],
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.spin("turntable", parent="truck", axis=Z, pivot=p(-2, 0, 0))
+    b.spin("turntable", "truck", Z, p(-2, 0, 0))
     b.part(
         "ladder",
         [box(p(-2.3, s * 0.38, 1.85), p(3, s * 0.33, 2.05)) for s in (-1, 1)],
         [box(p(x - 0.03, -0.35, 1.86), p(x + 0.03, 0.35, 1.92)) for x in spread(10, -2.3, 3)],
-        material="metal",
+        look="metal",
     )
-    b.hinge("ladder", parent="turntable", axis=-Y, pivot=p(-2.2, 0, 1.95), upper=0.9)
+    b.hinge("ladder", "turntable", -Y, p(-2.2, 0, 1.95), 0.9)
     b.part(
         "extension",
         [box(p(-2, s * 0.31, 1.94), p(3.3, s * 0.26, 2.12)) for s in (-1, 1)],
         [box(p(x - 0.03, -0.28, 2), p(x + 0.03, 0.28, 2.06)) for x in spread(10, -2, 3.3)],
-        material="metal",
+        look="metal",
     )
-    b.slide("extension", parent="ladder", axis=X, upper=3.5 * size)
+    b.slide("extension", "ladder", X, 3.5 * size)
     for i, (x, s) in enumerate([(x, s) for x in (-2.2, 2.4) for s in (-1, 1)]):
-        wheel(
-            b,
-            f"wheel_{i}",
-            parent="truck",
-            middle=p(x, s * 1.3, 0.5),
-            radius=0.5 * size,
-            wide=0.26 * size,
-            out=s * Y,
-            axle=0.02 * size,
-        )
+        wheel(b, f"wheel_{i}", "truck", p(x, s * 1.3, 0.5), 0.5 * size, 0.26 * size, s * Y, axle=0.02 * size)
 
 
-@kind(
-    "planet rover",
-    words="mars rover, moon rover, rover, lunar rover, exploration robot",
-    size=length(0.5, 1.2),
-)
+@kind(words="mars rover, moon rover, rover, lunar rover, exploration robot", size=(0.5, 1.2))
 def planet_rover(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -344,8 +273,7 @@ def planet_rover(b: ObjectBuilder, size: float) -> None:
         box(p(-0.5, -0.35, 0.5), p(0.5, 0.35, 0.75)),
         b.cylinder(0.04 * size, p(0, -0.44, 0.55), p(0, 0.44, 0.55)),
         box(p(-0.6, -0.4, 0.75), p(0.3, 0.4, 0.78)),
-        material="metal",
-        color="white",
+        look="white metal",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
@@ -356,18 +284,18 @@ def planet_rover(b: ObjectBuilder, size: float) -> None:
             beam(0.05 * size, 0.05 * size, p(0, s * 0.4, 0.5), p(0, s * 0.4, 0.25), Y),
             [b.cylinder(0.025 * size, p(x, s * 0.38, 0.2), p(x, s * 0.44, 0.2)) for x in (-0.6, 0, 0.6)],
             [beam(0.04 * size, 0.04 * size, p(x, s * 0.4, 0.26), p(x, s * 0.4, 0.2), Y) for x in (-0.6, 0, 0.6)],
-            material="metal",
+            look="metal",
         )
-        b.hinge(f"rocker_{k}", parent="body", axis=Y, pivot=p(0, s * 0.4, 0.55), upper=0.2, lower=-0.2)
+        b.hinge(f"rocker_{k}", "body", Y, p(0, s * 0.4, 0.55), 0.2, lower=-0.2)
         for i, x in enumerate((-0.6, 0, 0.6)):
             wheel(
                 b,
                 f"wheel_{k}_{i}",
-                parent=f"rocker_{k}",
-                middle=p(x, s * 0.54, 0.2),
-                radius=0.2 * size,
-                wide=0.16 * size,
-                out=s * Y,
+                f"rocker_{k}",
+                p(x, s * 0.54, 0.2),
+                0.2 * size,
+                0.16 * size,
+                s * Y,
                 axle=0.01 * size,
                 material="metal",
             )
@@ -376,86 +304,66 @@ def planet_rover(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.03 * size, p(0.4, 0.2, 0.752), p(0.4, 0.2, 1.2)),
         [box(p(0.38, 0.2 + s * 0.06, 1.17), p(0.42, 0.2 + s * 0.045, 1.3)) for s in (-1, 1)],
         box(p(0.38, 0.14, 1.17), p(0.42, 0.26, 1.2)),
-        material="metal",
-        color="white",
+        look="white metal",
     )
-    b.spin("mast", parent="body", axis=Z, pivot=p(0.4, 0.2, 0))
-    b.part("camera", box(p(0.36, 0.158, 1.225), p(0.46, 0.242, 1.32)), color="black")
-    b.hinge("camera", parent="mast", axis=Y, pivot=p(0.4, 0.2, 1.27), upper=0.3, lower=-0.3)
+    b.spin("mast", "body", Z, p(0.4, 0.2, 0))
+    b.part("camera", box(p(0.36, 0.158, 1.225), p(0.46, 0.242, 1.32)), look="black")
+    b.hinge("camera", "mast", Y, p(0.4, 0.2, 1.27), 0.3, lower=-0.3)
 
 
-@kind(
-    "satellite",
-    words="space probe, spacecraft, cubesat",
-    size=length(0.3, 1.5),
-)
+@kind(words="space probe, spacecraft, cubesat", size=(0.3, 1.5))
 def satellite(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "bus",
         box(p(-0.3, -0.3, 0), p(0.3, 0.3, 0.8)),
         b.cylinder(0.05 * size, p(0, 0, 0.79), p(0, 0, 0.9)),
-        material="metal",
-        color="gold",
+        look="gold metal",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
             f"arm_{k}",
             b.cylinder(0.02 * size, p(s * 0.302, 0, 0.4), p(s * 0.45, 0, 0.4)),
             box(p(s * 0.45, -0.25, 0.385), p(s * 1.1, 0.25, 0.41)),
-            material="metal",
-            color="dark blue",
+            look="dark blue metal",
         )
-        b.spin(f"arm_{k}", parent="bus", axis=s * X, pivot=p(0, 0, 0.4))
-        b.part(
-            f"panel_{k}", box(p(s * 1.102, -0.25, 0.385), p(s * 1.75, 0.25, 0.41)), material="metal", color="dark blue"
-        )
-        b.hinge(f"panel_{k}", parent=f"arm_{k}", axis=s * -Y, pivot=p(s * 1.101, 0, 0.41), upper=2.2)
+        b.spin(f"arm_{k}", "bus", s * X, p(0, 0, 0.4))
+        b.part(f"panel_{k}", box(p(s * 1.102, -0.25, 0.385), p(s * 1.75, 0.25, 0.41)), look="dark blue metal")
+        b.hinge(f"panel_{k}", f"arm_{k}", s * -Y, p(s * 1.101, 0, 0.41), 2.2)
     b.part(
         "dish",
         b.cone(0.06 * size, 0.25 * size, p(0, 0, 0.99), p(0, 0, 1.1)),
         b.cylinder(0.04 * size, p(0, 0, 0.93), p(0, 0, 1)),
-        material="metal",
-        color="white",
+        look="white metal",
     )
     b.cut("dish", b.cone(0.03 * size, 0.235 * size, p(0, 0, 1.02), p(0, 0, 1.101)))
-    b.hinge("dish", parent="bus", axis=X, pivot=p(0, 0, 0.9), upper=0.25, lower=-0.25)
+    b.hinge("dish", "bus", X, p(0, 0, 0.9), 0.25, lower=-0.25)
 
 
-@kind("segway", words="self balancing scooter", size=length(0.9, 1.1))
+@kind(words="self balancing scooter", size=(0.9, 1.1))
 def segway(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "deck",
         box(p(-0.2, -0.15, 0.2), p(0.2, 0.15, 0.3)),
         [box(p(s * 0.03, -0.02, 0.29), p(s * 0.022, 0.02, 0.38)) for s in (-1, 1)],
-        color="black",
+        look="black",
     )
     b.part(
         "handle",
         beam(0.04 * size, 0.04 * size, p(0, 0, 0.33), p(0, 0.06, 1.15), Y),
         b.rod(0.02 * size, p(-0.25, 0.06, 1.15), p(0.25, 0.06, 1.15)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("handle", parent="deck", axis=X, pivot=p(0, 0, 0.352), upper=0.1, lower=-0.1)
+    b.hinge("handle", "deck", X, p(0, 0, 0.352), 0.1, lower=-0.1)
     for k, s in enumerate((-1, 1)):
-        wheel(
-            b,
-            f"wheel_{k}",
-            parent="deck",
-            middle=p(s * 0.27, 0, 0.24),
-            radius=0.24 * size,
-            wide=0.1 * size,
-            out=s * X,
-            axle=0.02 * size,
-        )
+        wheel(b, f"wheel_{k}", "deck", p(s * 0.27, 0, 0.24), 0.24 * size, 0.1 * size, s * X, axle=0.02 * size)
 
 
 @kind(
-    "stroller",
     walls=4,
     words="baby stroller, pram, baby carriage, pushchair, buggy for babies, baby buggy, doll carriage",
-    size=length(0.9, 1.1),
+    size=(0.9, 1.1),
 )
 def stroller(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
@@ -469,36 +377,22 @@ def stroller(b: ObjectBuilder, size: float) -> None:
         [box(p(s * 0.225, 0, 0.5), p(s * 0.2, 0.08, 0.76)) for s in (-1, 1)],
         [box(p(s * 0.235, 0.3, 0.1), p(s * 0.2, 0.4, 0.2)) for s in (-1, 1)],
         [box(p(s * 0.235, -0.34, 0.16), p(s * 0.2, -0.26, 0.24)) for s in (-1, 1)],
-        material="metal",
-        color="black",
+        look="black metal",
     )
     b.cut("frame", box(p(-0.18, -0.33, 0.48), p(0.18, 0.28, 1)))
-    b.part("hood", b.cylinder(0.3 * size, p(-0.238, 0.04, 0.72), p(0.238, 0.04, 0.72)), color="blue")
+    b.part("hood", b.cylinder(0.3 * size, p(-0.238, 0.04, 0.72), p(0.238, 0.04, 0.72)), look="blue")
     b.cut(
         "hood",
         b.cylinder(0.285 * size, p(-0.2385 + 0.008, 0.04, 0.72), p(0.2305, 0.04, 0.72)),
         box(p(-1, -1, 0), p(1, 1, 0.735)),
         box(p(-1, -1, 0), p(1, -0.02, 2)),
     )
-    b.hinge("hood", parent="frame", axis=X, pivot=p(0, 0.04, 0.735), upper=0.8, lower=0)
+    b.hinge("hood", "frame", X, p(0, 0.04, 0.735), 0.8, lower=0)
     for k, (y, s) in enumerate([(y, s) for y in (-0.3, 0.35) for s in (-1, 1)]):
-        wheel(
-            b,
-            f"wheel_{k}",
-            parent="frame",
-            middle=p(s * 0.265, y, 0.14),
-            radius=0.14 * size,
-            wide=0.04 * size,
-            out=s * X,
-            axle=0.008 * size,
-        )
+        wheel(b, f"wheel_{k}", "frame", p(s * 0.265, y, 0.14), 0.14 * size, 0.04 * size, s * X, axle=0.008 * size)
 
 
-@kind(
-    "caravan",
-    walls=12,
-    words="camper trailer, mobile home",
-)
+@kind(walls=12, words="camper trailer, mobile home")
 def caravan(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.15)
     p = scaled(size)
@@ -508,8 +402,7 @@ def caravan(b: ObjectBuilder) -> None:
         box(p(-2.6, -0.05, 0.5), p(-1.79, 0.05, 0.6)),
         box(p(-2.45, -0.04, 0), p(-2.37, 0.04, 0.51)),
         box(p(-0.25, -0.9, 0.3), p(0.25, 0.9, 0.51)),
-        material="metal",
-        color="white",
+        look="white metal",
     )
     b.cut(
         "body",
@@ -517,23 +410,13 @@ def caravan(b: ObjectBuilder) -> None:
         box(p(0.6, -2, 0.6), p(1.3, 0, 2.3)),
         box(p(-1.3, -2, 1.3), p(0.1, 0, 2.1)),
     )
-    leaf(
-        b,
-        "door",
-        parent="body",
-        lower=p(0.58, -1.04, 0.58),
-        upper=p(1.32, -1.001, 2.32),
-        hinge=X,
-        out=-Y,
-        reach=1.7,
-        material="metal",
-    )
+    leaf(b, "door", "body", p(0.58, -1.04, 0.58), p(1.32, -1.001, 2.32), hinge=X, out=-Y, reach=1.7, material="metal")
     leaf(
         b,
         "flap",
-        parent="body",
-        lower=p(-1.32, -1.04, 1.28),
-        upper=p(0.12, -1.001, 2.12),
+        "body",
+        p(-1.32, -1.04, 1.28),
+        p(0.12, -1.001, 2.12),
         hinge=Z,
         out=-Y,
         reach=1.6,
@@ -544,32 +427,27 @@ def caravan(b: ObjectBuilder) -> None:
         wheel(
             b,
             f"wheel_{k}",
-            parent="body",
-            middle=p(0, s * 1.08 if s > 0 else -1.08, 0.33),
-            radius=0.33 * size,
-            wide=0.14 * size,
-            out=s * Y,
+            "body",
+            p(0, s * 1.08 if s > 0 else -1.08, 0.33),
+            0.33 * size,
+            0.14 * size,
+            s * Y,
             axle=0.09 * size,
         )
 
 
-@kind(
-    "semaphore",
-    words="railway signal, semaphore signal, rail signal",
-    height=length(1.0, 4.0),
-)
+@kind(words="railway signal, semaphore signal, rail signal", height=(1.0, 4.0))
 def semaphore(b: ObjectBuilder, height: float) -> None:
     b.part(
         "mast",
-        box((-0.2, -0.2, 0), (0.2, 0.2, 0.05)),
-        b.cylinder(0.05, (0, 0, 0.04), (0, 0, height + 0.1)),
+        slab(0.2, 0.2, (0, 0.05)),
+        b.cylinder(0.05, 0.04, height + 0.1),
         b.cylinder(0.02, (0, 0, height - 0.1), (0, -0.1, height - 0.1)),
-        material="steel",
-        color="white",
+        look="white steel",
     )
-    b.part("arm", box((-0.1, -0.09, height - 0.17), (0.6, -0.075, height - 0.03)), material="steel", color="red")
+    b.part("arm", box((-0.1, -0.09, height - 0.17), (0.6, -0.075, height - 0.03)), look="red steel")
     b.cut("arm", b.cylinder(0.022, (0, -1, height - 0.1), (0, 1, height - 0.1)))
-    b.hinge("arm", parent="mast", axis=Y, pivot=(0, 0, height - 0.1), upper=0.8, lower=0)
+    b.hinge("arm", "mast", Y, (0, 0, height - 0.1), 0.8, lower=0)
 
 
 @kind(
@@ -585,8 +463,7 @@ def rail_switch(b: ObjectBuilder) -> None:
         [box(p(-1.5, s * 0.75 - 0.05, 0.12), p(1.5, s * 0.75 + 0.05, 0.28)) for s in (-1, 1)],
         box(p(-0.3, 1.2, 0), p(0.3, 1.9, 0.1)),
         box(p(-0.1, 0.9, 0), p(0.1, 1.3, 0.1)),
-        material="steel",
-        color="brown",
+        look="brown steel",
     )
     b.part(
         "blade",
@@ -598,14 +475,13 @@ def rail_switch(b: ObjectBuilder) -> None:
             for s in (-1, 1)
         ],
         box(p(-1.2, -0.62, 0.125), p(-1.1, 0.62, 0.17)),
-        material="steel",
+        look="steel",
     )
-    b.slide("blade", parent="bed", axis=Y, upper=0.03 * size, lower=-0.03 * size)
+    b.slide("blade", "bed", Y, 0.03 * size, lower=-0.03 * size)
     b.part(
         "lever",
         beam(0.08 * size, 0.08 * size, p(0, 1.6, 0.14), p(0, 1.6, 1), Y),
         b.cylinder(0.1 * size, p(0, 1.5, 0.9), p(0, 1.7, 0.9)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.hinge("lever", parent="bed", axis=X, pivot=p(0, 1.6, 0.14), upper=0.6, lower=-0.6)
+    b.hinge("lever", "bed", X, p(0, 1.6, 0.14), 0.6, lower=-0.6)

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole, yes
+from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import axles, case, caster, rotor, wheel
 from kinematify.generate.library.panels import grip, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, slab, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,46 +31,35 @@ def _windows(d: ObjectBuilder, lower: Point, upper: Point) -> Sequence[Manifold]
 
 
 @kind(
-    "box car",
     walls=38,
-    words=(
-        "car, automobile, toy car, sedan, passenger car, hatchback, taxi, police car, suv, station wagon, estate car"
-    ),
-    length=length(2.5, 4.5),
-    width=length(1.4, 1.9),
-    radius=length(0.25, 0.35),
+    words="car, automobile, toy car, sedan, passenger car, hatchback, taxi, police car, suv, station wagon, estate car",
+    length=(2.5, 4.5),
+    width=(1.4, 1.9),
+    radius=(0.25, 0.35),
 )
 def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> None:
     """A car of boxes: four wheels, doors, a tailgate and a bonnet as they come."""
     b.part(
         "body",
-        box((-length / 2, -width / 2, radius), (length / 2, width / 2, radius + 0.55)),
-        box((-0.45 * length, -0.45 * width, radius + 0.5), (0.15 * length, 0.45 * width, radius + 1.1)),
+        slab(length / 2, width / 2, (radius, radius + 0.55)),
+        slab((-0.45 * length, 0.15 * length), 0.45 * width, (radius + 0.5, radius + 1.1)),
         _windows(
             b,
             (-0.45 * length, -0.45 * width, radius + 0.68),
             (0.15 * length, 0.45 * width, radius + 1.0),
         ),
-        material="steel",
+        look="steel",
     )
-    axles(
-        b,
-        "body",
-        xs=(-0.32 * length, 0.32 * length),
-        half=width / 2,
-        radius=radius,
-        wide=b.draw(0.15, 0.25),
-        axle=b.pick(0.01, 0.05),
-    )
+    axles(b, "body", (-0.32 * length, 0.32 * length), width / 2, radius, b.draw(0.15, 0.25), b.pick(0.01, 0.05))
     for s, side in ((-1, "right"), (1, "left")):
         if b.maybe(0.7):
             y = s * width / 2
             leaf(
                 b,
                 f"door_{side}",
-                parent="body",
-                lower=(-0.12 * length, y, radius + 0.1),
-                upper=(0.15 * length, y + s * 0.04, radius + 0.5),
+                "body",
+                (-0.12 * length, y, radius + 0.1),
+                (0.15 * length, y + s * 0.04, radius + 0.5),
                 hinge=X,
                 out=s * Y,
                 reach=1.1,
@@ -80,9 +69,9 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
         leaf(
             b,
             "bonnet",
-            parent="body",
-            lower=(0.16 * length, -0.45 * width, radius + 0.55),
-            upper=(length / 2, 0.45 * width, radius + 0.58),
+            "body",
+            (0.16 * length, -0.45 * width, radius + 0.55),
+            (length / 2, 0.45 * width, radius + 0.58),
             hinge=-X,
             out=Z,
             reach=1.0,
@@ -93,9 +82,9 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
         leaf(
             b,
             "tailgate",
-            parent="body",
-            lower=(-length / 2 - 0.03, -0.42 * width, radius + 0.1),
-            upper=(-length / 2, 0.42 * width, radius + 0.55),
+            "body",
+            (-length / 2 - 0.03, -0.42 * width, radius + 0.1),
+            (-length / 2, 0.42 * width, radius + 0.55),
             hinge=b.pick(Z, -Z),
             out=-X,
             reach=1.4,
@@ -104,22 +93,21 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
 
 
 @kind(
-    "pickup truck",
     walls=47,
     words="pickup, lorry, truck, flatbed truck, toy truck",
-    length=length(4.0, 5.5),
-    width=length(1.7, 2.0),
-    radius=length(0.32, 0.42),
+    length=(4.0, 5.5),
+    width=(1.7, 2.0),
+    radius=(0.32, 0.42),
 )
 def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -> None:
     """A cab, a bed with a tailgate, four wheels."""
     b.part(
         "body",
-        box((-length / 2, -width / 2, radius), (length / 2, width / 2, radius + 0.4)),
-        box((-0.05 * length, -0.46 * width, radius + 0.3), (0.28 * length, 0.46 * width, radius + 1.15)),
-        box((0.2 * length, -width / 2, radius), (length / 2, width / 2, radius + 0.7)),
+        slab(length / 2, width / 2, (radius, radius + 0.4)),
+        slab((-0.05 * length, 0.28 * length), 0.46 * width, (radius + 0.3, radius + 1.15)),
+        slab((0.2 * length, length / 2), width / 2, (radius, radius + 0.7)),
         _windows(b, (-0.05 * length, -0.46 * width, radius + 0.78), (0.28 * length, 0.46 * width, radius + 1.08)),
-        material="steel",
+        look="steel",
     )
     for s in (-1, 1):
         b.part(
@@ -129,23 +117,23 @@ def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -
     leaf(
         b,
         "tailgate",
-        parent="body",
-        lower=(-length / 2 - 0.05, -width / 2 + 0.07, radius + 0.41),
-        upper=(-length / 2, width / 2 - 0.07, radius + 0.8),
+        "body",
+        (-length / 2 - 0.05, -width / 2 + 0.07, radius + 0.41),
+        (-length / 2, width / 2 - 0.07, radius + 0.8),
         hinge=-Z,
         out=-X,
         reach=1.57,
         handle=b.maybe(),
         material="steel",
     )
-    axles(b, "body", xs=(-0.3 * length, 0.32 * length), half=width / 2, radius=radius, wide=0.25, axle=0.02)
+    axles(b, "body", (-0.3 * length, 0.32 * length), width / 2, radius, 0.25, 0.02)
     if b.maybe():
         leaf(
             b,
             "bonnet",
-            parent="body",
-            lower=(0.3 * length, -0.45 * width, radius + 0.7),
-            upper=(length / 2, 0.45 * width, radius + 0.73),
+            "body",
+            (0.3 * length, -0.45 * width, radius + 0.7),
+            (length / 2, 0.45 * width, radius + 0.73),
             hinge=-X,
             out=Z,
             reach=1.0,
@@ -154,30 +142,29 @@ def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -
 
 
 @kind(
-    "van",
     walls=35,
     words=(
         "delivery van, minivan, camper van, ambulance, transporter van, minibus, campervan, cargo van, "
         "transporter, camper, motorhome, mail van, post van, police van, food truck, panel van, rv, bakery "
         "van, news van"
     ),
-    length=length(4.5, 6.0),
-    width=length(1.8, 2.1),
-    height=length(1.6, 2.2),
+    length=(4.5, 6.0),
+    width=(1.8, 2.1),
+    height=(1.6, 2.2),
 )
 def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
     """A sliding side door, two rear doors, wheels."""
     r = 0.33
-    case(b, "body", lower=(-length / 2, -width / 2, r), upper=(length / 2, width / 2, r + height), material="steel")
+    case(b, "body", (-length / 2, -width / 2, r), (length / 2, width / 2, r + height), material="steel")
     b.part("body", _windows(b, (0.2 * length, -width / 2, r + 0.5 * height), (length / 2, width / 2, r + 0.9 * height)))
     leaf_w = width / 2 - 0.02
     for s, side in ((-1, "right"), (1, "left")):
         leaf(
             b,
             f"rear_{side}",
-            parent="body",
-            lower=(-length / 2 - 0.04, 0.01 * s, r + 0.15),
-            upper=(-length / 2, s * leaf_w, r + height - 0.1),
+            "body",
+            (-length / 2 - 0.04, 0.01 * s, r + 0.15),
+            (-length / 2, s * leaf_w, r + height - 0.1),
             hinge=s * Y,
             out=-X,
             reach=b.draw(1.6, 2.6),
@@ -186,9 +173,7 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
     g = b.gap(0.1)
     y = -width / 2 - g
     b.part(
-        "side_door",
-        box((-0.1 * length, y - 0.05, 2 * r + 0.02), (0.15 * length, y, r + height - 0.15)),
-        material="steel",
+        "side_door", box((-0.1 * length, y - 0.05, 2 * r + 0.02), (0.15 * length, y, r + height - 0.15)), look="steel"
     )
     b.part(
         "body",
@@ -197,9 +182,9 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
             (0.16 * length, -width / 2 + 0.01, r + height - 0.11),
         ),
     )
-    grip(b, "side_door", at=(0.12 * length, y - 0.05, r + height / 2), out=-Y, along=Z, length=0.2)
-    b.slide("side_door", parent="body", axis=-X, upper=0.24 * length)
-    axles(b, "body", xs=(-0.3 * length, 0.32 * length), half=width / 2, radius=r, wide=0.22, axle=0.02)
+    grip(b, "side_door", (0.12 * length, y - 0.05, r + height / 2), -Y, Z, 0.2)
+    b.slide("side_door", "body", -X, 0.24 * length)
+    axles(b, "body", (-0.3 * length, 0.32 * length), width / 2, r, 0.22, 0.02)
 
 
 @kind(
@@ -209,7 +194,7 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
         "tram, city bus, coach, streetcar, trolley bus, school bus, subway car, train car, railway carriage, "
         "tour bus, trolleybus, shuttle bus, airport shuttle, tram car, monorail"
     ),
-    length=length(6.0, 12.0),
+    length=(6.0, 12.0),
     swings=yes(0.5),
 )
 def bus_or_tram(b: ObjectBuilder, length: float, swings: bool) -> None:
@@ -217,7 +202,7 @@ def bus_or_tram(b: ObjectBuilder, length: float, swings: bool) -> None:
     w = 2.5
     r = 0.45
     h = 2.5
-    case(b, "body", lower=(-length / 2, -w / 2, r), upper=(length / 2, w / 2, r + h), material="steel")
+    case(b, "body", (-length / 2, -w / 2, r), (length / 2, w / 2, r + h), material="steel")
     b.part("body", _windows(b, (-length / 2, 0.01 - w / 2, r + 1.0), (length / 2, w / 2, r + 2.1)))
     g = b.gap(0.1) + 0.002
     for i, x in enumerate(spread(1 if length < 9 else 2, -0.25 * length, 0.2 * length)):
@@ -228,35 +213,29 @@ def bus_or_tram(b: ObjectBuilder, length: float, swings: bool) -> None:
                 leaf(
                     b,
                     name,
-                    parent="body",
-                    lower=(a, -w / 2 - 0.04, r + 0.1),
-                    upper=(b_, -w / 2, r + 2.1),
+                    "body",
+                    (a, -w / 2 - 0.04, r + 0.1),
+                    (b_, -w / 2, r + 2.1),
                     hinge=s * X,
                     out=-Y,
                     reach=1.5,
                     material="glass",
                 )
             else:
-                b.part(name, box((a, -w / 2 - 0.04 - g, r + 0.1), (b_, -w / 2 - g, r + 2.1)), material="glass")
-                b.slide(name, parent="body", axis=s * X, upper=0.6)
-    axles(b, "body", xs=(-0.35 * length, 0.3 * length), half=w / 2, radius=r, wide=0.28, axle=0.02)
+                b.part(name, box((a, -w / 2 - 0.04 - g, r + 0.1), (b_, -w / 2 - g, r + 2.1)), look="glass")
+                b.slide(name, "body", s * X, 0.6)
+    axles(b, "body", (-0.35 * length, 0.3 * length), w / 2, r, 0.28, 0.02)
 
 
-@kind(
-    "skateboard",
-    words="longboard, skate board",
-    length=length(0.6, 0.9),
-    width=length(0.18, 0.24),
-    radius=length(0.025, 0.035),
-)
+@kind(words="longboard, skate board", length=(0.6, 0.9), width=(0.18, 0.24), radius=(0.025, 0.035))
 def skateboard(b: ObjectBuilder, length: float, width: float, radius: float) -> None:
     """A deck, two trucks that tilt, four wheels."""
     b.part(
         "deck",
-        box((-length / 2, -width / 2, 0.1), (length / 2, width / 2, 0.112)),
+        slab(length / 2, width / 2, (0.1, 0.112)),
         [b.cylinder(width / 2, (s * length / 2, 0, 0.1), (s * length / 2, 0, 0.112)) for s in (-1, 1)],
         [block((s * 0.3 * length, 0, 0.095), (0.08, 0.06, 0.012)) for s in (-1, 1)],
-        material="wood",
+        look="wood",
     )
     g = b.gap(0.02) + 0.0005
     for k, s in enumerate((-1, 1)):
@@ -264,40 +243,39 @@ def skateboard(b: ObjectBuilder, length: float, width: float, radius: float) -> 
         name = f"truck_{k}"
         b.part(
             name,
-            box((x - 0.015, -0.38 * width, radius - 0.008), (x + 0.015, 0.38 * width, radius + 0.008)),
+            slab((x - 0.015, x + 0.015), 0.38 * width, (radius - 0.008, radius + 0.008)),
             b.cylinder(0.012, (x, 0, radius), (x, 0, 0.085 - g)),
-            material="metal",
+            look="metal",
         )
-        b.hinge(name, parent="deck", axis=X, pivot=(x, 0, 0.07), upper=0.2, lower=-0.2, ajar=False)
+        b.hinge(name, "deck", X, (x, 0, 0.07), 0.2, lower=-0.2, ajar=False)
         for q in (-1, 1):
             wheel(
                 b,
                 f"wheel_{k}_{int(q > 0)}",
-                parent=name,
-                middle=(x, q * (0.38 * width + 0.022), radius),
-                radius=radius,
-                wide=0.035,
-                out=q * Y,
+                name,
+                (x, q * (0.38 * width + 0.022), radius),
+                radius,
+                0.035,
+                q * Y,
                 axle=0.004,
             )
 
 
 @kind(
-    "shopping cart",
     words="shopping trolley, supermarket trolley, grocery cart, supermarket cart",
-    length=length(0.7, 1.0),
-    width=length(0.45, 0.6),
-    height=length(0.9, 1.05),
+    length=(0.7, 1.0),
+    width=(0.45, 0.6),
+    height=(0.9, 1.05),
 )
 def shopping_cart(b: ObjectBuilder, length: float, width: float, height: float) -> None:
     """A wire basket, four casters, a child's flap."""
     z0 = 0.45
     b.part(
         "cart",
-        box((-length / 2, -width / 2, z0), (length / 2, width / 2, z0 + 0.01)),
-        [box((-length / 2, s * width / 2, z0), (length / 2, s * (width / 2 - 0.01), height - 0.15)) for s in (-1, 1)],
-        box((length / 2 - 0.01, -width / 2, z0), (length / 2, width / 2, height - 0.15)),
-        material="steel",
+        slab(length / 2, width / 2, (z0, z0 + 0.01)),
+        [slab(length / 2, (s * width / 2, s * (width / 2 - 0.01)), (z0, height - 0.15)) for s in (-1, 1)],
+        slab((length / 2 - 0.01, length / 2), width / 2, (z0, height - 0.15)),
+        look="steel",
     )
     b.part(
         "cart",
@@ -326,9 +304,9 @@ def shopping_cart(b: ObjectBuilder, length: float, width: float, height: float) 
     leaf(
         b,
         "flap",
-        parent="cart",
-        lower=(-length / 2 - 0.012, -width / 2 + 0.02, z0 + 0.02),
-        upper=(-length / 2, width / 2 - 0.02, height - 0.17),
+        "cart",
+        (-length / 2 - 0.012, -width / 2 + 0.02, z0 + 0.02),
+        (-length / 2, width / 2 - 0.02, height - 0.17),
         hinge=Z,
         out=-X,
         reach=0.6,
@@ -338,10 +316,10 @@ def shopping_cart(b: ObjectBuilder, length: float, width: float, height: float) 
     for k, (x, y) in enumerate(
         [(x, y) for x in (-0.38 * length, 0.38 * length) for y in (-0.45 * width, 0.45 * width)]
     ):
-        caster(b, f"caster_{k}", parent="cart", top=(x, y, 0.12), high=0.12)
+        caster(b, f"caster_{k}", "cart", (x, y, 0.12), 0.12)
 
 
-@kind("motor boat", words="speed boat, speedboat, outboard boat, motorboat, power boat", length=length(3.0, 7.0))
+@kind(words="speed boat, speedboat, outboard boat, motorboat, power boat", length=(3.0, 7.0))
 def motor_boat(b: ObjectBuilder, length: float) -> None:
     """An outboard that steers, its propeller, a steering wheel, a hatch."""
     b.part(
@@ -352,30 +330,19 @@ def motor_boat(b: ObjectBuilder, length: float) -> None:
             0.36 * length,
             "y",
         ),
-        box((0, -0.12 * length, 0.17 * length), (0.1 * length, 0.12 * length, 0.28 * length)),
+        slab((0, 0.1 * length), 0.12 * length, (0.17 * length, 0.28 * length)),
     )
     g = b.gap(0.05 * length) + 0.001
     x = -0.52 * length
-    b.part(
-        "hull", box((-0.515 * length, -0.008 * length, 0.14 * length), (-0.499 * length, 0.008 * length, 0.18 * length))
-    )
+    b.part("hull", slab((-0.515 * length, -0.499 * length), 0.008 * length, (0.14 * length, 0.18 * length)))
     b.part(
         "outboard",
-        box((x - 0.1 * length, -0.04 * length, 0.12 * length), (x, 0.04 * length, 0.26 * length)),
-        box((x - 0.07 * length, -0.015 * length, -0.1 * length), (x - 0.03 * length, 0.015 * length, 0.13 * length)),
+        slab((x - 0.1 * length, x), 0.04 * length, (0.12 * length, 0.26 * length)),
+        slab((x - 0.07 * length, x - 0.03 * length), 0.015 * length, (-0.1 * length, 0.13 * length)),
         b.cylinder(0.02 * length, (x - 0.09 * length, 0, -0.07 * length), (x - 0.02 * length, 0, -0.07 * length)),
     )
-    b.hinge("outboard", parent="hull", axis=Z, pivot=(x, 0, 0), upper=0.45, lower=-0.45, ajar=False)
-    rotor(
-        b,
-        "propeller",
-        parent="outboard",
-        at=(x - 0.09 * length, 0, -0.07 * length),
-        out=-X,
-        radius=0.06 * length,
-        blades=3,
-        wide=0.5,
-    )
+    b.hinge("outboard", "hull", Z, (x, 0, 0), 0.45, lower=-0.45, ajar=False)
+    rotor(b, "propeller", "outboard", (x - 0.09 * length, 0, -0.07 * length), -X, 0.06 * length, 3, wide=0.5)
     at = vector(0, 0.06 * length, 0.24 * length)
     b.part(
         "wheel",
@@ -392,13 +359,13 @@ def motor_boat(b: ObjectBuilder, length: float) -> None:
             for v in (Y, Z)
         ],
     )
-    b.spin("wheel", parent="hull", axis=-X, pivot=at)
+    b.spin("wheel", "hull", -X, at)
     leaf(
         b,
         "hatch",
-        parent="hull",
-        lower=(0.15 * length, -0.08 * length, 0.18 * length),
-        upper=(0.33 * length, 0.08 * length, 0.18 * length + 0.02),
+        "hull",
+        (0.15 * length, -0.08 * length, 0.18 * length),
+        (0.33 * length, 0.08 * length, 0.18 * length + 0.02),
         hinge=b.pick(X, -X),
         out=Z,
         reach=1.5,
@@ -406,31 +373,30 @@ def motor_boat(b: ObjectBuilder, length: float) -> None:
 
 
 @kind(
-    "trailer",
     words="car trailer, utility trailer, box trailer, boat trailer",
-    length=length(1.5, 3.0),
-    width=length(1.0, 1.5),
-    radius=length(0.22, 0.32),
-    height=length(0.25, 0.4),
+    length=(1.5, 3.0),
+    width=(1.0, 1.5),
+    radius=(0.22, 0.32),
+    height=(0.25, 0.4),
 )
 def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height: float) -> None:
     """A flat bed with sides that fold down, two wheels, a jockey wheel that goes up."""
     z = radius + 0.2
     b.part(
         "bed",
-        box((-length / 2, -width / 2, z), (length / 2, width / 2, z + 0.05)),
+        slab(length / 2, width / 2, (z, z + 0.05)),
         beam(0.08, 0.08, (length / 2 - 0.1, 0, z), (length / 2 + 0.8, 0, z)),
-        [box((-0.1, s * width / 2, radius - 0.05), (0.1, s * (width / 2 - 0.08), z + 0.01)) for s in (-1, 1)],
-        material="steel",
+        [slab(0.1, (s * width / 2, s * (width / 2 - 0.08)), (radius - 0.05, z + 0.01)) for s in (-1, 1)],
+        look="steel",
     )
-    axles(b, "bed", xs=(0.0,), half=width / 2, radius=radius, wide=0.16, axle=0.03)
+    axles(b, "bed", (0.0,), width / 2, radius, 0.16, 0.03)
     for k, (s, out) in enumerate(((-1, -Y), (1, Y))):
         leaf(
             b,
             f"side_{k}",
-            parent="bed",
-            lower=(-length / 2 + 0.03, s * width / 2, z + 0.055),
-            upper=(length / 2 - 0.03, s * (width / 2 - 0.025), z + 0.05 + height),
+            "bed",
+            (-length / 2 + 0.03, s * width / 2, z + 0.055),
+            (length / 2 - 0.03, s * (width / 2 - 0.025), z + 0.05 + height),
             hinge=-Z,
             out=out,
             reach=0.8,
@@ -439,9 +405,9 @@ def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height
     leaf(
         b,
         "tailgate",
-        parent="bed",
-        lower=(-length / 2 - 0.025, -width / 2, z + 0.055),
-        upper=(-length / 2, width / 2, z + 0.05 + height),
+        "bed",
+        (-length / 2 - 0.025, -width / 2, z + 0.055),
+        (-length / 2, width / 2, z + 0.05 + height),
         hinge=-Z,
         out=-X,
         reach=1.6,
@@ -455,103 +421,83 @@ def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height
         b.cylinder(0.022 - (1.5 * g if b.style.has_bore else 0), (x, 0.07, 0.14), (x, 0.07, z + 0.2)),
         [beam(0.03, 0.006, (x, 0.07 + s, 0.15), (x, 0.07 + s, 0.06), Y) for s in (-0.035, 0.035)],
         block((x, 0.07, 0.15), (0.04, 0.08, 0.02)),
-        material="steel",
+        look="steel",
     )
-    b.slide("jockey", parent="bed", axis=Z, upper=0.05, ajar=False)
-    b.part("jockey_wheel", b.cylinder(0.08, (x, 0.045, 0.07), (x, 0.095, 0.07)), material="rubber")
+    b.slide("jockey", "bed", Z, 0.05, ajar=False)
+    b.part("jockey_wheel", b.cylinder(0.08, (x, 0.045, 0.07), (x, 0.095, 0.07)), look="rubber")
     b.cut("jockey", b.cylinder(0.085, (x, 0.043, 0.07), (x, 0.097, 0.07)))
-    b.spin("jockey_wheel", parent="jockey", axis=Y, pivot=(x, 0.07, 0.07))
+    b.spin("jockey_wheel", "jockey", Y, (x, 0.07, 0.07))
 
 
 @kind(
-    "windmill",
     words="dutch windmill, grain windmill, toy windmill",
     sails=whole(4, 4, words="sail", drawn=False),
-    height=length(1.0, 8.0),
+    height=(1.0, 8.0),
 )
 def windmill(b: ObjectBuilder, height: float) -> None:
     """Sails on a cap that turns on a tower, a door below."""
-    b.part("tower", b.cone(0.22 * height, 0.14 * height, (0, 0, 0), (0, 0, 0.8 * height)), material="wood")
+    b.part("tower", b.cone(0.22 * height, 0.14 * height, 0, 0.8 * height), look="wood")
     g = b.gap(0.05 * height)
     b.part(
         "cap",
-        b.cone(0.16 * height, 0.05 * height, (0, 0, 0.8 * height + g), (0, 0, height)),
+        b.cone(0.16 * height, 0.05 * height, 0.8 * height + g, height),
         b.cylinder(0.03 * height, (0, 0, 0.87 * height), (0, -0.24 * height, 0.87 * height)),
-        material="wood",
+        look="wood",
     )
-    b.spin("cap", parent="tower", axis=Z, pivot=(0, 0, 0.8 * height))
-    rotor(
-        b,
-        "sails",
-        parent="cap",
-        at=(0, -0.24 * height, 0.87 * height),
-        out=-Y,
-        radius=0.45 * height,
-        blades=4,
-        wide=0.2,
-    )
+    b.spin("cap", "tower", Z, (0, 0, 0.8 * height))
+    rotor(b, "sails", "cap", (0, -0.24 * height, 0.87 * height), -Y, 0.45 * height, 4, wide=0.2)
 
 
-@kind("wind turbine", words="wind generator, wind power plant, wind wheel", height=length(0.5, 40.0))
+@kind(words="wind generator, wind power plant, wind wheel", height=(0.5, 40.0))
 def wind_turbine(b: ObjectBuilder, height: float) -> None:
     """A nacelle that yaws on a mast and a rotor with three blades."""
-    b.part("mast", b.cone(0.04 * height, 0.025 * height, (0, 0, 0), (0, 0, height)), material="steel")
+    b.part("mast", b.cone(0.04 * height, 0.025 * height, 0, height), look="steel")
     g = b.gap(0.02 * height)
     b.part(
         "nacelle",
-        box((-0.03 * height, -0.06 * height, height + g), (0.03 * height, 0.12 * height, height + 0.06 * height)),
+        slab(0.03 * height, (-0.06 * height, 0.12 * height), (height + g, height + 0.06 * height)),
     )
-    b.spin("nacelle", parent="mast", axis=Z, pivot=(0, 0, height))
+    b.spin("nacelle", "mast", Z, (0, 0, height))
     rotor(
-        b,
-        "rotor",
-        parent="nacelle",
-        at=(0, -0.06 * height, height + 0.03 * height),
-        out=-Y,
-        radius=0.6 * height,
-        blades=b.count(2, 4),
-        wide=0.08,
+        b, "rotor", "nacelle", (0, -0.06 * height, height + 0.03 * height), -Y, 0.6 * height, b.count(2, 4), wide=0.08
     )
 
 
 @kind(
-    "mailbox",
     words="letter box, post box, letterbox, postbox, mail box",
     part_words={"door": "flap"},
-    width=length(0.15, 0.25),
-    length=length(0.35, 0.55),
-    height=length(0.9, 1.2),
+    width=(0.15, 0.25),
+    length=(0.35, 0.55),
+    height=(0.9, 1.2),
 )
 def mailbox(b: ObjectBuilder, width: float, length: float, height: float) -> None:
     """A door in front and a flag at the side."""
     b.part(
         "box",
-        box((-width / 2, 0, height), (width / 2, length, height + width)),
+        slab(width / 2, (0, length), (height, height + width)),
         b.cylinder(width / 2, (0, 0, height + width), (0, length, height + width)),
-        box((-0.04, 0.4 * length, 0), (0.04, 0.4 * length + 0.08, height + 0.01)),
-        material="steel",
+        slab(0.04, (0.4 * length, 0.4 * length + 0.08), (0, height + 0.01)),
+        look="steel",
     )
     g = b.gap(0.05)
     b.part(
         "door",
-        box((-width / 2, -0.01 - g, height), (width / 2, -g, height + width)),
+        slab(width / 2, (-0.01 - g, -g), (height, height + width)),
         b.cylinder(width / 2, (0, -0.01 - g, height + width), (0, -g, height + width)),
-        material="steel",
+        look="steel",
     )
-    grip(b, "door", at=(0, -0.01 - g, height + 1.2 * width), out=-Y, along=X, length=0.04)
-    b.hinge("door", parent="box", axis=X, pivot=(0, -g - 0.01 * b.pick(0, 1), height), upper=1.5)
+    grip(b, "door", (0, -0.01 - g, height + 1.2 * width), -Y, X, 0.04)
+    b.hinge("door", "box", X, (0, -g - 0.01 * b.pick(0, 1), height), 1.5)
     x = width / 2 + g + 0.001
     b.part(
         "flag",
         box((x, 0.2 * length, height + 0.3 * width), (x + 0.005, 0.2 * length + 0.02, height + 1.4 * width)),
         box((x, 0.2 * length, height + 1.1 * width), (x + 0.005, 0.2 * length + 0.1, height + 1.45 * width)),
     )
-    b.hinge(
-        "flag", parent="box", axis=X * b.pick(1, -1), pivot=(x, 0.2 * length + 0.01, height + 0.35 * width), upper=1.57
-    )
+    b.hinge("flag", "box", X * b.pick(1, -1), (x, 0.2 * length + 0.01, height + 0.35 * width), 1.57)
 
 
-@kind("greenhouse", words="glasshouse, hothouse", width=length(1.5, 2.5), length=length(1.5, 3.0))
+@kind(words="glasshouse, hothouse", width=(1.5, 2.5), length=(1.5, 3.0))
 def greenhouse(b: ObjectBuilder, width: float, length: float) -> None:
     """A house of glass: roof vents that lift, a sliding door."""
     h = 1.6
@@ -564,25 +510,24 @@ def greenhouse(b: ObjectBuilder, width: float, length: float) -> None:
         [beam(t, t, (s * width / 2, y, h), (0, y, h + 0.4), Y) for s in (-1, 1) for y in (0, length)],
         beam(t, t, (0, 0, h + 0.4), (0, length, h + 0.4)),
         [beam(t, t, (-width / 2, y, h), (width / 2, y, h)) for y in (0, length)],
-        material="metal",
+        look="metal",
     )
     slope = vector(width / 2, 0, -0.4) / np.hypot(width / 2, 0.4)
     up = vector(0.4, 0, width / 2) / np.hypot(width / 2, 0.4)
     g = b.gap(0.02) + 0.021
     for k, y in enumerate(spread(b.count(1, 3), 0.05, length - 0.05)):
         a = vector(0, y, h + 0.4) + 0.02 * slope + g * up
-        b.part(f"vent_{k}", beam(0.8 * length / 4, 0.01, a, a + 0.45 * width * slope, up), material="glass")
-        b.hinge(f"vent_{k}", parent="frame", axis=-Y, pivot=a, upper=0.7)
+        b.part(f"vent_{k}", beam(0.8 * length / 4, 0.01, a, a + 0.45 * width * slope, up), look="glass")
+        b.hinge(f"vent_{k}", "frame", -Y, a, 0.7)
     y = -0.02 - b.gap(0.05) - 0.003
-    b.part("door", box((-0.4, y - 0.02, 0.03), (0.4, y, h - 0.02)), material="glass")
-    b.slide("door", parent="frame", axis=X, upper=0.7)
+    b.part("door", slab(0.4, (y - 0.02, y), (0.03, h - 0.02)), look="glass")
+    b.slide("door", "frame", X, 0.7)
 
 
 @kind(
-    "barbecue",
     words="grill, bbq, charcoal grill, kettle grill, gas grill, smoker, bbq grill, barbecue grill",
-    radius=length(0.2, 0.32),
-    z=length(0.6, 0.75),
+    radius=(0.2, 0.32),
+    z=(0.6, 0.75),
 )
 def barbecue(b: ObjectBuilder, radius: float, z: float) -> None:
     """A bowl with a lid, vents that turn, a tray, wheels."""
@@ -597,7 +542,7 @@ def barbecue(b: ObjectBuilder, radius: float, z: float) -> None:
             )
             for a in np.arange(3) * 2 * pi / 3
         ],
-        material="steel",
+        look="steel",
     )
     if b.style.hollow:
         b.cut(
@@ -612,16 +557,16 @@ def barbecue(b: ObjectBuilder, radius: float, z: float) -> None:
     b.part(
         "lid",
         b.lathe([(0, 0), (radius, 0), (0.6 * radius, 0.6 * radius), (0, 0.7 * radius)], (0, 0, top)),
-        material="steel",
+        look="steel",
     )
-    grip(b, "lid", at=(0, -0.75 * radius, top + 0.35 * radius), out=-Y, along=X, length=0.15)
+    grip(b, "lid", (0, -0.75 * radius, top + 0.35 * radius), -Y, X, 0.15)
     if b.maybe(0.6):
-        b.hinge("lid", parent="bowl", axis=-X, pivot=(0, radius, top), upper=1.4)
+        b.hinge("lid", "bowl", -X, (0, radius, top), 1.4)
     else:
-        b.slide("lid", parent="bowl", axis=Z, upper=0.2)
+        b.slide("lid", "bowl", Z, 0.2)
     b.part(
         "vent",
-        b.cylinder(0.2 * radius, (0, 0, top + 0.7 * radius + g), (0, 0, top + 0.7 * radius + 0.004 + g)),
-        b.cylinder(0.03 * radius, (0, 0, top + 0.7 * radius + g), (0, 0, top + 0.75 * radius)),
+        b.cylinder(0.2 * radius, top + 0.7 * radius + g, top + 0.7 * radius + 0.004 + g),
+        b.cylinder(0.03 * radius, top + 0.7 * radius + g, top + 0.75 * radius),
     )
-    b.hinge("vent", parent="lid", axis=Z, pivot=(0, 0, top + 0.7 * radius), upper=0.8, ajar=False)
+    b.hinge("vent", "lid", Z, (0, 0, top + 0.7 * radius), 0.8, ajar=False)

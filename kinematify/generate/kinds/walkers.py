@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.generate.kinds.limbs import leg_solids, limb_solids
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
-from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod, vector
+from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod, slab, vector
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "quadruped",
     words=(
         "robot dog, dog robot, dog, four legged robot, quadruped robot, robot cat, robotic dog, robot horse, "
         "mechanical dog, toy dog"
@@ -60,8 +59,8 @@ def quadruped(
     high = lengths[0] + lengths[1] + 0.5 * joint_radius
     w.body(
         "trunk",
-        box((-half, -wide, high - 1.3 * joint_radius), (half, wide, high + 1.7 * joint_radius)),
-        box((half - 0.05, -0.03, high + joint_radius), (half + 0.03, 0.03, high + 2.7 * joint_radius)),
+        slab(half, wide, (high - 1.3 * joint_radius, high + 1.7 * joint_radius)),
+        slab((half - 0.05, half + 0.03), 0.03, (high + joint_radius, high + 2.7 * joint_radius)),
     )
     for leg, side in (
         ("front_left", (1, 1)),
@@ -77,13 +76,7 @@ def quadruped(
         roll, its_thigh, its_shank = swings_of()
         if joints > 2:
             w.body(f"{leg}_hip", links["hip"])
-            w.turns(
-                f"{leg}_hip",
-                parent="trunk",
-                axis=(1, 0, 0),
-                pivot=pivots[0],
-                limits=(-roll, 0.5) if side[1] > 0 else (-0.5, roll),
-            )
+            w.turns(f"{leg}_hip", "trunk", (1, 0, 0), pivots[0], (-roll, 0.5) if side[1] > 0 else (-0.5, roll))
             above = f"{leg}_hip"
         else:
             hip_2 = pivots[0]
@@ -93,14 +86,13 @@ def quadruped(
                 cylinder(joint_radius, off(hip_2, -joint_radius, 0, 0), off(hip_2, joint_radius, 0, 0)),
             )
         w.body(f"{leg}_thigh", links["thigh"])
-        w.turns(f"{leg}_thigh", parent=above, axis=(0, 1, 0), pivot=pivots[1], limits=(-its_thigh, its_thigh))
+        w.turns(f"{leg}_thigh", above, (0, 1, 0), pivots[1], (-its_thigh, its_thigh))
         w.body(f"{leg}_shank", links["shank"])
-        w.turns(f"{leg}_shank", parent=f"{leg}_thigh", axis=(0, 1, 0), pivot=pivots[2], limits=(-its_shank, its_shank))
+        w.turns(f"{leg}_shank", f"{leg}_thigh", (0, 1, 0), pivots[2], (-its_shank, its_shank))
     w.settle()
 
 
 @kind(
-    "hexapod",
     words=(
         "six legged robot, spider robot, robot spider, spider, hexapod robot, insect robot, robot ant, robot "
         "insect, robotic spider, ant robot, beetle robot, toy spider"
@@ -150,7 +142,7 @@ def hexapod(
         if joints > 2:
             above = f"{leg}_coxa"
             w.body(above, coxa)
-            w.turns(above, parent="trunk", axis=(0, 0, 1), pivot=upright, limits=(-0.3, 0.3))
+            w.turns(above, "trunk", (0, 0, 1), upright, (-0.3, 0.3))
         else:
             w.add(
                 "trunk",
@@ -158,14 +150,13 @@ def hexapod(
                 cylinder(joint_radius, off(upright, 0, 0, -joint_radius), off(upright, 0, 0, joint_radius)),
             )
         w.body(f"{leg}_femur", its_femur)
-        w.turns(f"{leg}_femur", parent=above, axis=across, pivot=femur_at, limits=(-0.3, 0.8))
+        w.turns(f"{leg}_femur", above, across, femur_at, (-0.3, 0.8))
         w.body(f"{leg}_tibia", its_tibia)
-        w.turns(f"{leg}_tibia", parent=f"{leg}_femur", axis=across, pivot=tibia_at, limits=(-0.35, 0.9))
+        w.turns(f"{leg}_tibia", f"{leg}_femur", across, tibia_at, (-0.35, 0.9))
     w.settle()
 
 
 @kind(
-    "humanoid",
     words=(
         "humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, wind up robot, "
         "robot figure, action figure, robot man, toy humanoid"
@@ -220,13 +211,9 @@ def humanoid(
     top = hip + 3.6 * joint_radius
     w.body(
         "pelvis",
-        box(
-            (back - 2.0 * joint_radius, -wide - joint_radius, hip - 1.2 * joint_radius),
-            (back, wide + joint_radius, top),
-        ),
-        box(
-            (back - 2.0 * joint_radius, -wide - 0.5 * joint_radius, top - 0.8 * joint_radius),
-            (2.0 * joint_radius, wide + 0.5 * joint_radius, top),
+        slab((back - 2.0 * joint_radius, back), wide + joint_radius, (hip - 1.2 * joint_radius, top)),
+        slab(
+            (back - 2.0 * joint_radius, 2.0 * joint_radius), wide + 0.5 * joint_radius, (top - 0.8 * joint_radius, top)
         ),
     )
     for name, sy in (("left", 1), ("right", -1)):
@@ -238,11 +225,11 @@ def humanoid(
         w.body(f"{name}_hip", links["hip"])
         inwards, outwards = roll()
         limits = (-inwards, outwards) if sy > 0 else (-outwards, inwards)
-        w.turns(f"{name}_hip", parent="pelvis", axis=(1, 0, 0), pivot=pivots[0], limits=limits)
+        w.turns(f"{name}_hip", "pelvis", (1, 0, 0), pivots[0], limits)
         w.body(f"{name}_thigh", links["thigh"])
-        w.turns(f"{name}_thigh", parent=f"{name}_hip", axis=(0, -1, 0), pivot=pivots[1], limits=(-0.6, 1.2))
+        w.turns(f"{name}_thigh", f"{name}_hip", (0, -1, 0), pivots[1], (-0.6, 1.2))
         w.body(f"{name}_shank", links["shank"])
-        w.turns(f"{name}_shank", parent=f"{name}_thigh", axis=(0, 1, 0), pivot=pivots[2], limits=(0.0, 1.8))
+        w.turns(f"{name}_shank", f"{name}_thigh", (0, 1, 0), pivots[2], (0.0, 1.8))
         if feet == "feet":
             # A sole beside the end of a shank, on a stub through it.
             ankle = off(pivots[2], 0, -sy * (0.8 * joint_radius + clearance), -lengths[1])
@@ -261,7 +248,7 @@ def humanoid(
                 outer,
             )
             w.body(f"{name}_foot", rotor, strut, sole, material="rubber")
-            w.turns(f"{name}_foot", parent=f"{name}_shank", axis=(0, 1, 0), pivot=pivot, limits=(-0.5, 0.5))
+            w.turns(f"{name}_foot", f"{name}_shank", (0, 1, 0), pivot, (-0.5, 0.5))
     # A torso that turns on the pelvis, its head and its arms.
     half = shoulder
     waist = (-joint_radius, 0.0, top)
@@ -273,11 +260,11 @@ def humanoid(
     high = top + torso
     side = half - 3.2 * joint_radius
     trunk = hull(
-        box((x - 1.5 * joint_radius, -0.6 * side, low - 0.7 * joint_radius), (x + 1.5 * joint_radius, 0.6 * side, low)),
-        box((x - 2.0 * joint_radius, -side, high - 0.5 * torso), (x + 2.2 * joint_radius, side, high)),
+        slab((x - 1.5 * joint_radius, x + 1.5 * joint_radius), 0.6 * side, (low - 0.7 * joint_radius, low)),
+        slab((x - 2.0 * joint_radius, x + 2.2 * joint_radius), side, (high - 0.5 * torso, high)),
     )
     w.body("torso", rotor_2, trunk)
-    w.turns("torso", parent="pelvis", axis=(0, 0, 1), pivot=waist, limits=(-1.2, 1.2))
+    w.turns("torso", "pelvis", (0, 0, 1), waist, (-1.2, 1.2))
     pivot_2 = off((x, 0.0, high), 0, 0, joint_radius)
     boss_4, hole_4, rotor_3 = stub(pivot_2, (0, 0, 1), joint_radius, clearance)
     w.add("torso", boss_4)
@@ -287,7 +274,7 @@ def humanoid(
     skull = hull(ball(size, centre), ball(0.7 * size, off(centre, 0.5 * size, 0, -0.6 * size)))
     eyes = [ball(0.18 * size, off(centre, 0.95 * size, s * 0.4 * size, 0.1 * size)) for s in (-1, 1)]
     w.body("head", rotor_3, cylinder(0.8 * joint_radius, off(pivot_2, 0, 0, 0.5 * joint_radius), centre), skull, eyes)
-    w.turns("head", parent="torso", axis=(0, 0, 1), pivot=pivot_2, limits=(-1.2, 1.2))
+    w.turns("head", "torso", (0, 0, 1), pivot_2, (-1.2, 1.2))
     for name_2, sy_2 in (("left", 1), ("right", -1)):
         shoulder_2 = vector(x, sy_2 * half, high - 1.4 * joint_radius)
         w.add("torso", cylinder(joint_radius, off(shoulder_2, 0, -sy_2 * half, 0), shoulder_2))
@@ -297,9 +284,9 @@ def humanoid(
         w.add("torso", boss)
         w.cut("torso", hole)
         w.body(f"{name_2}_upper_arm", upper)
-        w.turns(f"{name_2}_upper_arm", parent="torso", axis=(0, -1, 0), pivot=shoulder_2, limits=(-0.8, 2.6))
+        w.turns(f"{name_2}_upper_arm", "torso", (0, -1, 0), shoulder_2, (-0.8, 2.6))
         w.body(f"{name_2}_forearm", lower)
-        w.turns(f"{name_2}_forearm", parent=f"{name_2}_upper_arm", axis=(0, -1, 0), pivot=elbow, limits=(0.0, 2.0))
+        w.turns(f"{name_2}_forearm", f"{name_2}_upper_arm", (0, -1, 0), elbow, (0.0, 2.0))
         small_2 = 0.6 * joint_radius
         end = off(wrist, 0, 0, -0.6 * joint_radius)
         palm = [off(end, 0, 0, -z * joint_radius - clearance) for z in (1.0, 2.4)]
@@ -321,12 +308,11 @@ def humanoid(
             w.add(f"{name_2}_forearm", boss_5)
             w.cut(f"{name_2}_forearm", hole_5)
             w.body(f"{name_2}_hand", rotor_4, hand, thumb)
-            w.turns(f"{name_2}_hand", parent=f"{name_2}_forearm", axis=(0, 0, 1), pivot=end, limits=(-1.4, 1.4))
+            w.turns(f"{name_2}_hand", f"{name_2}_forearm", (0, 0, 1), end, (-1.4, 1.4))
     w.settle()
 
 
 @kind(
-    "snake",
     words=(
         "snake robot, worm robot, chain robot, snake arm, caterpillar robot, inchworm robot, tentacle, "
         "tentacle robot, toy snake"
@@ -371,6 +357,6 @@ def snake(w: Workshop, segments: int, radius: float, segment: float, clearance: 
             w.add(f"segment_{k}", forked.transform(place))
             w.add(f"segment_{k + 1}", reach)
             axis = (0, 0, 1) if upright else (0, 1, 0)
-            w.turns(f"segment_{k + 1}", parent=f"segment_{k}", axis=axis, pivot=(start, 0, radius), limits=(-0.7, 0.7))
+            w.turns(f"segment_{k + 1}", f"segment_{k}", axis, (start, 0, radius), (-0.7, 0.7))
     w.add("segment_1", rod(0.8 * radius, (0, 0, radius), (-0.6 * radius, 0, radius)))
     w.settle()

@@ -5,29 +5,28 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.library.kind import choice, kind, whole
 from kinematify.generate.library.mechanisms import caster, in_fork, legs, wheel
 from kinematify.generate.library.panels import leaf, seam
-from kinematify.generate.procedural.solids import X, Y, Z, box
+from kinematify.generate.procedural.solids import X, Y, Z, box, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
-    "platform cart",
     words=(
         "platform truck, flatbed cart, platform trolley, transport cart, luggage cart, luggage trolley, trolley, "
         "flatbed trolley, warehouse trolley"
     ),
-    width=length(0.35, 0.7),
-    depth=length(0.5, 1.1),
-    radius=length(0.03, 0.1),
+    width=(0.35, 0.7),
+    depth=(0.5, 1.1),
+    radius=(0.03, 0.1),
 )
 def platform_cart(b: ObjectBuilder, width: float, depth: float, radius: float) -> None:
     """A plate with a push bar on fixed wheels in forks and on casters."""
     top = 2.6 * radius
-    b.part("deck", box((-width / 2, 0, top), (width / 2, depth, top + b.draw(0.02, 0.06))), material="wood")
+    b.part("deck", slab(width / 2, (0, depth), (top, top + b.draw(0.02, 0.06))), look="wood")
     if b.maybe(0.7):
         h = b.draw(0.6, 1)
         bar = b.draw(0.01, 0.02)
@@ -39,35 +38,18 @@ def platform_cart(b: ObjectBuilder, width: float, depth: float, radius: float) -
         b.part("deck", b.cylinder(bar, (-0.42 * width, depth - 0.03, top + h), (0.42 * width, depth - 0.03, top + h)))
     wide = b.draw(0.3, 0.6) * radius
     for k, s in enumerate((-1, 1)):
-        in_fork(
-            b,
-            f"wheel_{k}",
-            parent="deck",
-            middle=(s * 0.38 * width, 0.85 * depth, radius),
-            radius=radius,
-            wide=wide,
-            top=top + 0.005,
-        )
+        in_fork(b, f"wheel_{k}", "deck", (s * 0.38 * width, 0.85 * depth, radius), radius, wide, top + 0.005)
         if b.maybe():
-            caster(b, f"caster_{k}", parent="deck", top=(s * 0.38 * width, 0.12 * depth, top), high=top)
+            caster(b, f"caster_{k}", "deck", (s * 0.38 * width, 0.12 * depth, top), top)
         else:
-            in_fork(
-                b,
-                f"front_wheel_{k}",
-                parent="deck",
-                middle=(s * 0.38 * width, 0.15 * depth, radius),
-                radius=radius,
-                wide=wide,
-                top=top + 0.005,
-            )
+            in_fork(b, f"front_wheel_{k}", "deck", (s * 0.38 * width, 0.15 * depth, radius), radius, wide, top + 0.005)
 
 
 @kind(
-    "box on wheels",
     words="wheeled box, wheelie bin, wheely bin, mobile garbage bin, rolling storage box, laundry cart",
-    width=length(0.05, 0.8),
-    depth=length(0.1, 1.4),
-    height=length(0.05, 0.6),
+    width=(0.05, 0.8),
+    depth=(0.1, 1.4),
+    height=(0.05, 0.6),
     number=whole(2, 3, words="axle"),
     form=choice(("beside", "below", "within")),
 )
@@ -76,9 +58,9 @@ def box_on_wheels(b: ObjectBuilder, width: float, depth: float, height: float, n
     r = b.draw(0.15, 0.4) * min(height, depth / number, width)
     wide = b.draw(0.2, 0.7) * r
     foot = {"beside": b.draw(0.3, 1.2) * r, "below": 2.05 * r, "within": b.draw(0.5, 1) * r}[form]
-    b.part("box", box((-width / 2, 0, foot), (width / 2, depth, foot + height)), material="wood")
+    b.part("box", slab(width / 2, (0, depth), (foot, foot + height)), look="wood")
     if b.maybe(0.4):
-        b.part("box", box((-0.4 * width, 0.3 * depth, foot + height), (0.4 * width, 0.9 * depth, foot + 1.6 * height)))
+        b.part("box", slab(0.4 * width, (0.3 * depth, 0.9 * depth), (foot + height, foot + 1.6 * height)))
     play = seam(b, r, wide)
     if form != "beside" or b.style.has_bore:
         play = max(play, 0.001)
@@ -88,56 +70,39 @@ def box_on_wheels(b: ObjectBuilder, width: float, depth: float, height: float, n
             if form == "within":
                 reach = r + play
                 b.cut("box", box((s * width, y - reach, foot - 1), (x - s * (wide / 2 + play), y + reach, r + reach)))
-            wheel(
-                b,
-                f"wheel_{i}_{'left' if s < 0 else 'right'}",
-                parent="box",
-                middle=(x, y, r),
-                radius=r,
-                wide=wide,
-                out=s * X,
-            )
+            wheel(b, f"wheel_{i}_{'left' if s < 0 else 'right'}", "box", (x, y, r), r, wide, s * X)
 
 
 @kind(
-    "folding table",
     words="camping table, picnic table, trestle table, card table",
-    width=length(0.5, 1.8),
-    depth=length(0.4, 0.9),
-    height=length(0.4, 0.8),
-    thick=length(0.015, 0.04),
-    leg=length(0.015, 0.04),
+    width=(0.5, 1.8),
+    depth=(0.4, 0.9),
+    height=(0.4, 0.8),
+    thick=(0.015, 0.04),
+    leg=(0.015, 0.04),
 )
 def folding_table(b: ObjectBuilder, width: float, depth: float, height: float, thick: float, leg: float) -> None:
     """A plate whose legs fold under it about their upper ends, or that folds itself in two."""
     play = seam(b, depth, thick)
     if b.maybe(0.7):
-        b.part("top", box((-width / 2, -depth / 2, height), (width / 2, depth / 2, height + thick)), material="wood")
+        b.part("top", slab(width / 2, depth / 2, (height, height + thick)), look="wood")
         for k, s in enumerate((-1, 1)):
             x = s * (width / 2 - b.draw(0.05, 0.12))
             high = height - play
             for y in (-0.42 * depth, 0.42 * depth):
-                b.part(
-                    f"legs_{k}", box((x - leg / 2, y - leg / 2, 0), (x + leg / 2, y + leg / 2, high)), material="metal"
-                )
+                b.part(f"legs_{k}", box((x - leg / 2, y - leg / 2, 0), (x + leg / 2, y + leg / 2, high)), look="metal")
             for z in (b.draw(0.1, 0.3) * height, high - leg):
-                b.part(f"legs_{k}", box((x - leg / 2, -0.42 * depth, z), (x + leg / 2, 0.42 * depth, z + leg)))
-            b.hinge(f"legs_{k}", parent="top", axis=s * Y, pivot=(x - s * leg / 2, 0, high), upper=1.5, ajar=False)
+                b.part(f"legs_{k}", slab((x - leg / 2, x + leg / 2), 0.42 * depth, (z, z + leg)))
+            b.hinge(f"legs_{k}", "top", s * Y, (x - s * leg / 2, 0, high), 1.5, ajar=False)
     else:
-        b.part("half", box((-width / 2, -depth / 2, height), (0, depth / 2, height + thick)), material="wood")
-        legs(
-            b,
-            "half",
-            lower=(-width / 2 + 0.02, -depth / 2 + 0.02, 0),
-            upper=(-0.02, depth / 2 - 0.02, height + 0.002),
-            thick=leg,
-        )
+        b.part("half", slab((-width / 2, 0), depth / 2, (height, height + thick)), look="wood")
+        legs(b, "half", (-width / 2 + 0.02, -depth / 2 + 0.02, 0), (-0.02, depth / 2 - 0.02, height + 0.002), leg)
         leaf(
             b,
             "other_half",
-            parent="half",
-            lower=(0, -depth / 2, height),
-            upper=(width / 2, depth / 2, height + thick),
+            "half",
+            (0, -depth / 2, height),
+            (width / 2, depth / 2, height + thick),
             hinge=-X,
             inset=True,
             handle=False,
@@ -148,22 +113,21 @@ def folding_table(b: ObjectBuilder, width: float, depth: float, height: float, t
 
 
 @kind(
-    "tilting screen",
     words=(
         "monitor, computer monitor, screen, display, television, tv, flat screen, computer screen, pc monitor, tv set"
     ),
-    width=length(0.15, 1.2),
-    height=length(0.12, 0.7),
-    thickness=length(0.01, 0.06),
-    z=length(0.05, 0.3),
+    width=(0.15, 1.2),
+    height=(0.12, 0.7),
+    thickness=(0.01, 0.06),
+    z=(0.05, 0.3),
     kind=choice(("tilts", "swivels", "rises")),
-    radius=length(0.01, 0.03),
+    radius=(0.01, 0.03),
 )
 def tilting_screen(
     b: ObjectBuilder, width: float, height: float, thickness: float, z: float, kind: str, radius: float
 ) -> None:
     """A flat screen on a foot or an arm: it tilts, it swivels, or it goes up on a post."""
-    b.part("foot", box((-0.25 * width, -0.1, 0), (0.25 * width, 0.12, 0.02)), material="metal")
+    b.part("foot", slab(0.25 * width, (-0.1, 0.12), (0, 0.02)), look="metal")
     y = thickness + radius
     post = z + 0.35 * height
     play = seam(b, 2 * radius, radius)
@@ -173,45 +137,26 @@ def tilting_screen(
         b.part(
             "screen",
             b.cylinder(radius, (0, y, low), (0, y, post)),
-            box((-radius, 0, post - 2 * radius), (radius, y, post + 2 * radius)),
+            slab(radius, (0, y), (post - 2 * radius, post + 2 * radius)),
         )
-        b.hinge(
-            "screen",
-            parent="foot",
-            axis=Z,
-            pivot=(0, y, low),
-            upper=b.draw(0.5, 1.6),
-            lower=-b.draw(0.5, 1.6),
-            ajar=False,
-        )
+        b.hinge("screen", "foot", Z, (0, y, low), b.draw(0.5, 1.6), lower=-b.draw(0.5, 1.6), ajar=False)
     elif kind == "tilts":
-        b.part("foot", box((-radius, y, 0), (radius, y + 2 * radius, post + radius)))
+        b.part("foot", slab(radius, (y, y + 2 * radius), (0, post + radius)))
         g = max(play, 0) if b.style.has_bore else play
         b.part("screen", b.rod(radius, (-2 * radius, y - radius - g, post), (2 * radius, y - radius - g, post)))
-        b.hinge(
-            "screen",
-            parent="foot",
-            axis=X,
-            pivot=(0, y - radius - g, post),
-            upper=min(0.3, 2 * radius / height),
-            lower=-0.4,
-            ajar=False,
-        )
+        b.hinge("screen", "foot", X, (0, y - radius - g, post), min(0.3, 2 * radius / height), lower=-0.4, ajar=False)
     else:
-        b.part("foot", box((-radius, y, 0), (radius, y + radius, post + 0.2 * height)))
+        b.part("foot", slab(radius, (y, y + radius), (0, post + 0.2 * height)))
         g = b.gap(radius)
         b.part(
             "screen",
-            box(
-                (-2.2 * radius, thickness - 0.002, post - 3 * radius),
-                (2.2 * radius, y + 2.2 * radius, post + 3 * radius),
-            ),
+            slab(2.2 * radius, (thickness - 0.002, y + 2.2 * radius), (post - 3 * radius, post + 3 * radius)),
         )
         b.cut(
             "screen",
-            box((-radius - g, y - g, 0), (radius + g, y + radius + g, 10))
+            slab(radius + g, (y - g, y + radius + g), (0, 10))
             if b.style.has_bore
-            else box((-radius, y, 0), (radius, y + radius, 10)),
+            else slab(radius, (y, y + radius), (0, 10)),
         )
-        b.slide("screen", parent="foot", axis=Z, upper=b.draw(0.1, 0.3) * height, lower=-0.1 * height, ajar=False)
-    b.part("screen", box((-width / 2, 0, z), (width / 2, thickness, z + height)))
+        b.slide("screen", "foot", Z, b.draw(0.1, 0.3) * height, lower=-0.1 * height, ajar=False)
+    b.part("screen", slab(width / 2, (0, thickness), (z, z + height)))

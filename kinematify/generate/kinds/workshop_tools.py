@@ -6,10 +6,10 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, caster, crank, knob, lever, wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -17,39 +17,29 @@ if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
 
 
-@kind(
-    "ratchet wrench",
-    words="socket wrench, torque wrench, ratchet spanner",
-    length=length(0.18, 0.3),
-)
+@kind(words="socket wrench, torque wrench, ratchet spanner", length=(0.18, 0.3))
 def ratchet_wrench(b: ObjectBuilder, length: float) -> None:
     b.part(
         "handle",
-        b.cylinder(0.018, (0, 0, 0), (0, 0, 0.022)),
+        b.cylinder(0.018, 0, 0.022),
         beam(0.014, 0.012, (0.01, 0, 0.011), (0.6 * length, 0, 0.011)),
         b.rod(0.011, (0.5 * length, 0, 0.011), (length, 0, 0.011)),
-        material="chrome",
+        look="chrome",
     )
-    b.bore("handle", b.cylinder(0.0085, (0, 0, -0.01), (0, 0, 0.012)))
-    b.part(
-        "socket",
-        b.cylinder(0.0075, (0, 0, 0.005), (0, 0, -0.002)),
-        b.cylinder(0.011, (0, 0, -0.001), (0, 0, -0.035)),
-        material="chrome",
-    )
-    b.cut("socket", b.cylinder(0.0075, (0, 0, -0.02), (0, 0, -0.1)))
-    b.spin("socket", parent="handle", axis=Z, pivot=(0, 0, 0))
+    b.bore("handle", b.cylinder(0.0085, -0.01, 0.012))
+    b.part("socket", b.cylinder(0.0075, 0.005, -0.002), b.cylinder(0.011, -0.001, -0.035), look="chrome")
+    b.cut("socket", b.cylinder(0.0075, -0.02, -0.1))
+    b.spin("socket", "handle", Z, (0, 0, 0))
     b.part(
         "lever",
-        b.cylinder(0.004, (0, 0, 0.0222), (0, 0, 0.027)),
+        b.cylinder(0.004, 0.0222, 0.027),
         beam(0.005, 0.003, (0, 0, 0.0255), (-0.014, 0, 0.0255)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.hinge("lever", parent="handle", axis=Z, pivot=(0, 0, 0), upper=0.6, lower=-0.6)
+    b.hinge("lever", "handle", Z, (0, 0, 0), 0.6, lower=-0.6)
 
 
-@kind("pipe cutter", words="tube cutter", size=length(0.9, 1.3))
+@kind(words="tube cutter", size=(0.9, 1.3))
 def pipe_cutter(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -58,89 +48,76 @@ def pipe_cutter(b: ObjectBuilder, size: float) -> None:
         box(p(-0.012, -0.01, 0), p(-0.002, 0.01, 0.06)),
         [b.cylinder(0.006 * size, p(x, -0.009, 0.016), p(x, 0.009, 0.016)) for x in (0.035, 0.052)],
         box(p(-0.024, -0.01, 0), p(-0.01, 0.01, 0.03)),
-        material="metal",
-        color="blue",
+        look="blue metal",
     )
     b.bore("frame", b.cylinder(0.0052 * size, p(-0.05, 0, 0.015), p(0, 0, 0.015)))
     b.part(
         "screw",
         b.cylinder(0.004 * size, p(-0.05, 0, 0.015), p(-0.003, 0, 0.015)),
         b.cylinder(0.012 * size, p(-0.065, 0, 0.015), p(-0.045, 0, 0.015)),
-        material="steel",
+        look="steel",
     )
-    b.spin("screw", parent="frame", axis=X, pivot=p(0, 0, 0.015))
+    b.spin("screw", "frame", X, p(0, 0, 0.015))
     b.part(
         "jaw",
         box(p(0.001, -0.01, 0.0125), p(0.018, 0.01, 0.04)),
         b.cylinder(0.01 * size, p(0.02, -0.002, 0.028), p(0.02, 0.002, 0.028)),
-        material="steel",
+        look="steel",
     )
-    b.slide("jaw", parent="frame", axis=X, upper=0.003)
+    b.slide("jaw", "frame", X, 0.003)
 
 
-@kind(
-    "toggle clamp",
-    words="quick clamp",
-    size=length(0.9, 1.4),
-)
+@kind(words="quick clamp", size=(0.9, 1.4))
 def toggle_clamp(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "base",
         box(p(-0.03, -0.02, 0), p(0.03, 0.02, 0.004)),
         [box(p(-0.025, s * 0.01, 0.003), p(0.02, s * 0.014, 0.04)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
     b.part(
         "arm",
         beam(0.016 * size, 0.008 * size, p(-0.01, 0, 0.032), p(0.07, 0, 0.032)),
         b.cylinder(0.004 * size, p(0.065, 0, 0.006), p(0.065, 0, 0.034)),
         b.cylinder(0.007 * size, p(0.065, 0, 0.004), p(0.065, 0, 0.01)),
-        material="steel",
+        look="steel",
     )
-    b.hinge("arm", parent="base", axis=-Y, pivot=p(0.012, 0, 0.032), upper=1.3)
+    b.hinge("arm", "base", -Y, p(0.012, 0, 0.032), 1.3)
     b.part(
         "handle",
         beam(0.014 * size, 0.008 * size, p(-0.018, 0, 0.016), p(-0.1, 0, 0.045)),
         b.rod(0.009 * size, p(-0.07, 0, 0.034), p(-0.11, 0, 0.048)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.hinge("handle", parent="base", axis=Y, pivot=p(-0.018, 0, 0.016), upper=1.2)
+    b.hinge("handle", "base", Y, p(-0.018, 0, 0.016), 1.2)
 
 
-@kind(
-    "caulking gun",
-    words="sealant gun, silicone gun",
-    length=length(0.2, 0.26),
-)
+@kind(words="sealant gun, silicone gun", length=(0.2, 0.26))
 def caulking_gun(b: ObjectBuilder, length: float) -> None:
     b.part(
         "frame",
-        box((-0.03, -0.03, -0.03), (-0.024, 0.03, 0.03)),
-        [box((-0.03, s * 0.026, -0.004), (length, s * 0.03, 0.004)) for s in (-1, 1)],
+        slab((-0.03, -0.024), 0.03, 0.03),
+        [slab((-0.03, length), (s * 0.026, s * 0.03), 0.004) for s in (-1, 1)],
         b.tube(0.03, 0.012, (length - 0.006, 0, 0), (length, 0, 0)),
-        box((-0.06, -0.012, -0.02), (-0.024, 0.012, 0.025)),
+        slab((-0.06, -0.024), 0.012, (-0.02, 0.025)),
         beam(0.02, 0.02, (-0.05, 0, -0.015), (-0.08, 0, -0.12), Y),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.bore(
-        "frame", b.cylinder(0.0055, (-0.2, 0, 0), (0, 0, 0)), box((-0.055, -0.0055, -0.03), (-0.028, 0.0055, -0.006))
-    )
+    b.bore("frame", b.cylinder(0.0055, (-0.2, 0, 0), (0, 0, 0)), slab((-0.055, -0.028), 0.0055, (-0.03, -0.006)))
     b.part(
         "rod",
         b.cylinder(0.004, (-0.2, 0, 0), (0.02, 0, 0)),
         b.cylinder(0.022, (0.016, 0, 0), (0.022, 0, 0)),
         beam(0.008, 0.006, (-0.195, 0, 0), (-0.2, 0, -0.05), Y),
-        material="steel",
+        look="steel",
     )
-    b.slide("rod", parent="frame", axis=X, upper=0.12)
-    b.part("trigger", beam(0.009, 0.009, (-0.036, 0, -0.012), (-0.045, 0, -0.1), Y), material="steel", color="black")
-    b.hinge("trigger", parent="frame", axis=Y, pivot=(-0.036, 0, -0.012), upper=0.08, lower=-0.1)
+    b.slide("rod", "frame", X, 0.12)
+    b.part("trigger", beam(0.009, 0.009, (-0.036, 0, -0.012), (-0.045, 0, -0.1), Y), look="black steel")
+    b.hinge("trigger", "frame", Y, (-0.036, 0, -0.012), 0.08, lower=-0.1)
 
 
-@kind("staple gun", words="tacker", size=length(0.9, 1.2))
+@kind(words="tacker", size=(0.9, 1.2))
 def staple_gun(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -150,18 +127,13 @@ def staple_gun(b: ObjectBuilder, size: float) -> None:
         box(p(0, -0.012, 0), p(0.02, 0.012, 0.075)),
         box(p(0, -0.012, 0.055), p(0.03, 0.012, 0.075)),
         [box(p(0.11, s * 0.012, 0.08), p(0.15, s * 0.008, 0.125)) for s in (-1, 1)],
-        material="steel",
+        look="steel",
     )
-    b.part(
-        "lever",
-        beam(0.013 * size, 0.012 * size, p(0.138, 0, 0.113), p(-0.01, 0, 0.14)),
-        material="steel",
-        color="black",
-    )
-    b.hinge("lever", parent="body", axis=-Y, pivot=p(0.138, 0, 0.113), upper=0.12, lower=-0.3)
+    b.part("lever", beam(0.013 * size, 0.012 * size, p(0.138, 0, 0.113), p(-0.01, 0, 0.14)), look="black steel")
+    b.hinge("lever", "body", -Y, p(0.138, 0, 0.113), 0.12, lower=-0.3)
 
 
-@kind("heat gun", words="hot air gun", size=length(0.9, 1.2))
+@kind(words="hot air gun", size=(0.9, 1.2))
 def heat_gun(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -169,19 +141,15 @@ def heat_gun(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.035 * size, p(-0.06, 0, 0.16), p(0.1, 0, 0.16)),
         b.cone(0.033 * size, 0.018 * size, p(0.1, 0, 0.16), p(0.18, 0, 0.16)),
         beam(0.03 * size, 0.04 * size, p(-0.01, 0, 0.14), p(-0.03, 0, 0), X),
-        color="orange",
+        look="orange",
     )
     b.bore("body", box(p(0.004, -0.007, 0.075), p(0.05, 0.007, 0.13)))
-    b.part("trigger", box(p(0.0105, -0.006, 0.08), p(0.026, 0.006, 0.122)), color="black")
-    b.slide("trigger", parent="body", axis=-X, upper=0.005)
-    knob(b, "dial", parent="body", at=p(-0.06, 0, 0.16), radius=0.018 * size, high=0.012 * size, out=-X, reach=4.5)
+    b.part("trigger", box(p(0.0105, -0.006, 0.08), p(0.026, 0.006, 0.122)), look="black")
+    b.slide("trigger", "body", -X, 0.005)
+    knob(b, "dial", "body", p(-0.06, 0, 0.16), 0.018 * size, -X, high=0.012 * size, reach=4.5)
 
 
-@kind(
-    "circular saw",
-    words="hand circular saw, plunge saw, track saw",
-    size=length(0.9, 1.2),
-)
+@kind(words="hand circular saw, plunge saw, track saw", size=(0.9, 1.2))
 def circular_saw(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -191,17 +159,17 @@ def circular_saw(b: ObjectBuilder, size: float) -> None:
         beam(0.03 * size, 0.03 * size, p(-0.1, 0.07, 0.2), p(-0.14, 0.07, 0.1)),
         box(p(-0.05, 0.03, 0.03), p(0.05, 0.1, 0.1)),
         box(p(-0.14, 0.012, 0.014), p(0.14, 0.12, 0.03)),
-        color="green",
+        look="green",
     )
     b.cut("body", box(p(-0.13, -0.02, 0), p(0.13, 0.0115, 0.2)))
     b.part(
         "blade",
         b.cylinder(0.085 * size, p(0, 0.001, 0.1), p(0, 0.003, 0.1)),
         b.cylinder(0.012 * size, p(0, -0.008, 0.1), p(0, 0.011, 0.1)),
-        material="steel",
+        look="steel",
     )
-    b.spin("blade", parent="body", axis=-Y, pivot=p(0, 0, 0.1))
-    b.part("guard", b.cylinder(0.098 * size, p(0, -0.006, 0.1), p(0, 0.0095, 0.1)), material="metal", color="grey")
+    b.spin("blade", "body", -Y, p(0, 0, 0.1))
+    b.part("guard", b.cylinder(0.098 * size, p(0, -0.006, 0.1), p(0, 0.0095, 0.1)), look="grey metal")
     b.cut(
         "guard",
         b.cylinder(0.091 * size, p(0, -0.0035, 0.1), p(0, 0.0065, 0.1)),
@@ -209,14 +177,10 @@ def circular_saw(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.02 * size, p(0, -0.1, 0.1), p(0, 0.1, 0.1)),
         box(p(-0.2, 0.0062, -0.1), p(0.2, 0.02, 0.3)),
     )
-    b.hinge("guard", parent="body", axis=Y, pivot=p(0, 0, 0.1), upper=1.6)
+    b.hinge("guard", "body", Y, p(0, 0, 0.1), 1.6)
 
 
-@kind(
-    "chainsaw",
-    words="chain saw",
-    size=length(0.9, 1.1),
-)
+@kind(words="chain saw", size=(0.9, 1.1))
 def chainsaw(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -229,100 +193,72 @@ def chainsaw(b: ObjectBuilder, size: float) -> None:
         box(p(0.09, -0.006, 0.03), p(0.45, 0.006, 0.09)),
         b.cylinder(0.03 * size, p(0.45, -0.006, 0.06), p(0.45, 0.006, 0.06)),
         [box(p(0.04, s * 0.06, 0.13), p(0.06, s * 0.07, 0.16)) for s in (-1, 1)],
-        color="orange",
+        look="orange",
     )
-    b.part("brake", box(p(0.055, -0.056, 0.145), p(0.063, 0.056, 0.23)), color="black")
-    b.hinge("brake", parent="body", axis=Y, pivot=p(0.059, 0, 0.15), upper=0.5, lower=-0.2)
+    b.part("brake", box(p(0.055, -0.056, 0.145), p(0.063, 0.056, 0.23)), look="black")
+    b.hinge("brake", "body", Y, p(0.059, 0, 0.15), 0.5, lower=-0.2)
     b.bore("body", b.cylinder(0.0085 * size, p(-0.03, -0.1, 0.07), p(-0.03, -0.02, 0.07)))
     b.part(
         "starter",
         b.cylinder(0.006 * size, p(-0.03, -0.075, 0.07), p(-0.03, -0.025, 0.07)),
         b.rod(0.01 * size, p(-0.06, -0.095, 0.07), p(0, -0.095, 0.07)),
         b.cylinder(0.006 * size, p(-0.03, -0.09, 0.07), p(-0.03, -0.07, 0.07)),
-        color="black",
+        look="black",
     )
-    b.slide("starter", parent="body", axis=-Y, upper=0.04)
+    b.slide("starter", "body", -Y, 0.04)
 
 
-@kind(
-    "band saw",
-    words="bandsaw",
-    height=length(0.8, 1.3),
-)
+@kind(words="bandsaw", height=(0.8, 1.3))
 def band_saw(b: ObjectBuilder, height: float) -> None:
     b.part(
         "frame",
-        box((-0.3, -0.05, 0), (0.3, 0.25, 0.4)),
+        slab(0.3, (-0.05, 0.25), (0, 0.4)),
         box((-0.3, 0, 0.4), (-0.2, 0.15, height)),
-        box((-0.3, 0, height), (0.3, 0.15, height + 0.3)),
+        slab(0.3, (0, 0.15), (height, height + 0.3)),
         box((0.02, 0.03, 0.4), (0.1, 0.12, 0.44)),
-        material="steel",
-        color="grey",
+        look="grey steel",
     )
-    b.cut("frame", box((-0.27, -0.06, 0.03), (0.27, 0.2, 0.37)))
+    b.cut("frame", slab(0.27, (-0.06, 0.2), (0.03, 0.37)))
     b.part("frame", box((0.059, 0.07, 0.42), (0.061, 0.085, height + 0.01)))
     b.part(
-        "table",
-        box((-0.12, -0.1, 0.47), (0.28, 0.25, 0.49)),
-        box((0.1, 0.03, 0.43), (0.14, 0.12, 0.471)),
-        material="steel",
+        "table", box((-0.12, -0.1, 0.47), (0.28, 0.25, 0.49)), box((0.1, 0.03, 0.43), (0.14, 0.12, 0.471)), look="steel"
     )
     b.cut("table", box((0.03, -0.2, 0.4), (0.09, 0.14, 0.5)))
     b.cut("frame", box((0.097, 0, 0.42), (0.145, 0.2, 0.48)))
     b.part("frame", box((0.145, 0.03, 0.4), (0.17, 0.12, 0.45)))
-    b.hinge("table", parent="frame", axis=Y, pivot=(0.12, 0, 0.44), upper=0.05, lower=-0.02)
-    leaf(
-        b,
-        "door",
-        parent="frame",
-        lower=(-0.29, -0.07, 0.01),
-        upper=(0.29, -0.052, 0.39),
-        hinge=-X,
-        out=-Y,
-        reach=1.8,
-        material="steel",
-    )
+    b.hinge("table", "frame", Y, (0.12, 0, 0.44), 0.05, lower=-0.02)
+    leaf(b, "door", "frame", (-0.29, -0.07, 0.01), (0.29, -0.052, 0.39), hinge=-X, out=-Y, reach=1.8, material="steel")
     b.part(
         "guide",
         box((0.08, 0.05, 0.75 * height), (0.1, 0.07, height - 0.002)),
         box((0.04, 0.05, 0.75 * height), (0.1, 0.068, 0.75 * height + 0.05)),
-        material="metal",
+        look="metal",
     )
-    b.slide("guide", parent="frame", axis=-Z, upper=0.125 * height)
+    b.slide("guide", "frame", -Z, 0.125 * height)
 
 
-@kind(
-    "saw horse",
-    words="sawhorse, folding trestle, trestle",
-    width=length(0.7, 1.1),
-    height=length(0.6, 0.85),
-)
+@kind(words="sawhorse, folding trestle, trestle", width=(0.7, 1.1), height=(0.6, 0.85))
 def saw_horse(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     lean = 0.28 * height
     b.part(
         "front",
-        box((-w, -0.045, height), (w, -0.0015, height + 0.05)),
+        slab(w, (-0.045, -0.0015), (height, height + 0.05)),
         [beam(0.05, 0.03, (s * 0.85 * w, -0.035, height + 0.01), (s * 0.85 * w, -lean, 0.015), X) for s in (-1, 1)],
         beam(0.05, 0.02, (-0.85 * w, -0.65 * lean, 0.4 * height), (0.85 * w, -0.65 * lean, 0.4 * height)),
-        material="wood",
+        look="wood",
     )
     b.part(
         "back",
-        box((-w, 0.0015, height), (w, 0.045, height + 0.05)),
+        slab(w, (0.0015, 0.045), (height, height + 0.05)),
         [beam(0.05, 0.03, (s * 0.85 * w, 0.035, height + 0.01), (s * 0.85 * w, lean, 0.015), X) for s in (-1, 1)],
         beam(0.05, 0.02, (-0.85 * w, 0.65 * lean, 0.4 * height), (0.85 * w, 0.65 * lean, 0.4 * height)),
-        material="wood",
+        look="wood",
     )
-    b.hinge("back", parent="front", axis=X, pivot=(0, 0, height + 0.05), upper=0.15, lower=0)
+    b.hinge("back", "front", X, (0, 0, height + 0.05), 0.15, lower=0)
 
 
-@kind(
-    "folding workbench",
-    words="portable workbench, work stand, bench with a vise jaw",
-    width=length(0.55, 0.75),
-    height=length(0.72, 0.85),
-)
+@kind(words="portable workbench, work stand, bench with a vise jaw", width=(0.55, 0.75), height=(0.72, 0.85))
 def folding_workbench(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     b.part(
@@ -330,33 +266,23 @@ def folding_workbench(b: ObjectBuilder, width: float, height: float) -> None:
         [beam(0.04, 0.025, (s * 0.8 * w, -0.12, height - 0.05), (s * 0.95 * w, -0.28, 0.012), X) for s in (-1, 1)],
         [beam(0.04, 0.025, (s * 0.8 * w, 0.1, height - 0.05), (s * 0.95 * w, 0.28, 0.012), X) for s in (-1, 1)],
         [box((s * 0.7 * w - 0.02, -0.22, height - 0.06), (s * 0.7 * w + 0.02, 0.2, height - 0.03)) for s in (-1, 1)],
-        box((-w, 0.02, height - 0.03), (w, 0.2, height)),
-        material="wood",
+        slab(w, (0.02, 0.2), (height - 0.03, height)),
+        look="wood",
     )
-    b.part("jaw", box((-w, -0.2, height - 0.029), (w, -0.005, height)), material="wood")
-    b.slide("jaw", parent="frame", axis=-Y, upper=0.1)
+    b.part("jaw", slab(w, (-0.2, -0.005), (height - 0.029, height)), look="wood")
+    b.slide("jaw", "frame", -Y, 0.1)
     for k, s in enumerate((-1, 1)):
-        crank(b, f"crank_{k}", parent="frame", at=(s * 0.7 * w, -0.22, height - 0.045), out=-Y, length=0.06)
+        crank(b, f"crank_{k}", "frame", (s * 0.7 * w, -0.22, height - 0.045), -Y, 0.06)
 
 
-@kind(
-    "mechanics creeper",
-    words="dolly, furniture dolly, piano dolly, plant trolley, wheeled board",
-    width=length(0.4, 0.6),
-    length=length(0.5, 1.1),
-)
+@kind(words="dolly, furniture dolly, piano dolly, plant trolley, wheeled board", width=(0.4, 0.6), length=(0.5, 1.1))
 def mechanics_creeper(b: ObjectBuilder, width: float, length: float) -> None:
-    b.part("board", box((-width / 2, -length / 2, 0.09), (width / 2, length / 2, 0.11)), material="wood")
+    b.part("board", slab(width / 2, length / 2, (0.09, 0.11)), look="wood")
     for k, (x, y) in enumerate([(x, y) for x in (-0.4 * width, 0.4 * width) for y in (-0.42 * length, 0.42 * length)]):
-        caster(b, f"caster_{k}", parent="board", top=(x, y, 0.09), high=0.09)
+        caster(b, f"caster_{k}", "board", (x, y, 0.09), 0.09)
 
 
-@kind(
-    "engine hoist",
-    walls=40,
-    words="shop crane, floor crane",
-    size=length(0.8, 1.1),
-)
+@kind(walls=40, words="shop crane, floor crane", size=(0.8, 1.1))
 def engine_hoist(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -366,64 +292,46 @@ def engine_hoist(b: ObjectBuilder, size: float) -> None:
         box(p(-0.05, 0.02, 0.15), p(0.05, 0.12, 1.4)),
         [box(p(s * 0.05, -0.03, 1.4), p(s * 0.065, 0.12, 1.55)) for s in (-1, 1)],
         box(p(-0.065, 0.02, 1.36), p(0.065, 0.12, 1.41)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.part("boom", box(p(-0.045, -1.1, 1.45), p(0.045, 0.1, 1.53)), material="steel", color="red")
-    b.hinge("boom", parent="base", axis=-X, pivot=p(0, 0.06, 1.49), upper=0.5, lower=-0.05)
+    b.part("boom", box(p(-0.045, -1.1, 1.45), p(0.045, 0.1, 1.53)), look="red steel")
+    b.hinge("boom", "base", -X, p(0, 0.06, 1.49), 0.5, lower=-0.05)
     b.part(
         "hook",
         b.cylinder(0.012 * size, p(0, -1, 1.33), p(0, -1, 1.448)),
         b.torus(0.04 * size, 0.012 * size, p(0, -1, 1.29), X),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.spin("hook", parent="boom", axis=Z, pivot=p(0, -1, 0))
+    b.spin("hook", "boom", Z, p(0, -1, 0))
     for k, (x, y) in enumerate(((-0.35, -1.1), (0.35, -1.1), (-0.35, 0.06), (0.35, 0.06))):
-        caster(b, f"caster_{k}", parent="base", top=p(x, y, 0.1), high=0.1 * size)
+        caster(b, f"caster_{k}", "base", p(x, y, 0.1), 0.1 * size)
 
 
-@kind(
-    "air compressor",
-    words="compressor",
-    length=length(0.5, 0.8),
-)
+@kind(words="compressor", length=(0.5, 0.8))
 def air_compressor(b: ObjectBuilder, length: float) -> None:
     r = 0.16
     b.part(
         "tank",
         b.rod(r, (-length / 2 + r, 0, 0.26), (length / 2 - r, 0, 0.26)),
-        box((-0.15, -0.1, 0.4), (0.15, 0.1, 0.6)),
+        slab(0.15, 0.1, (0.4, 0.6)),
         [box((length / 2 - 0.2, s * 0.1 - 0.015, 0), (length / 2 - 0.17, s * 0.1 + 0.015, 0.2)) for s in (-1, 1)],
         b.cylinder(0.012, (-0.3 * length, -0.2, 0.09), (-0.3 * length, 0.2, 0.09)),
-        box((-0.3 * length - 0.02, -0.1, 0.08), (-0.3 * length + 0.02, 0.1, 0.16)),
-        material="steel",
-        color="red",
+        slab((-0.3 * length - 0.02, -0.3 * length + 0.02), 0.1, (0.08, 0.16)),
+        look="red steel",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
             f"wheel_{k}",
             b.cylinder(0.09, (-0.3 * length, s * 0.145, 0.09), (-0.3 * length, s * 0.19, 0.09)),
-            material="rubber",
+            look="rubber",
         )
         b.cut(f"wheel_{k}", b.cylinder(0.0135, (-0.3 * length, -1, 0.09), (-0.3 * length, 1, 0.09)))
-        b.spin(f"wheel_{k}", parent="tank", axis=s * Y, pivot=(-0.3 * length, 0, 0.09))
-    knob(b, "valve", parent="tank", at=(0, -0.1, 0.5), radius=0.02, high=0.03, out=-Y)
-    bail(
-        b,
-        "handle",
-        parent="tank",
-        start=(0.15, -0.1, 0.56),
-        end=(0.15, 0.1, 0.56),
-        high=0.25,
-        thick=0.02,
-        up=X,
-        lower=-0.6,
-        upper=0.2,
-    )
+        b.spin(f"wheel_{k}", "tank", s * Y, (-0.3 * length, 0, 0.09))
+    knob(b, "valve", "tank", (0, -0.1, 0.5), 0.02, -Y, high=0.03)
+    bail(b, "handle", "tank", (0.15, -0.1, 0.56), (0.15, 0.1, 0.56), 0.25, 0.02, X, lower=-0.6, upper=0.2)
 
 
-@kind("bellows", words="fireplace bellows, hand bellows", size=length(0.8, 1.2))
+@kind(words="fireplace bellows, hand bellows", size=(0.8, 1.2))
 def bellows(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
 
@@ -442,101 +350,83 @@ def bellows(b: ObjectBuilder, size: float) -> None:
         board(0.12, 0.008),
         b.cylinder(0.012 * size, p(0, 0.06, 0.012), p(0, 0.13, 0.012)),
         b.cone(0.006 * size, 0.012 * size, p(0, -0.02, 0.012), p(0, 0.07, 0.012)),
-        material="wood",
+        look="wood",
     )
-    b.part("board", board(0.13, 0.035), material="wood")
-    b.hinge("board", parent="lower_board", axis=X, pivot=p(0, 0.13, 0.03), upper=0.45)
+    b.part("board", board(0.13, 0.035), look="wood")
+    b.hinge("board", "lower_board", X, p(0, 0.13, 0.03), 0.45)
 
 
-@kind(
-    "multimeter",
-    words="voltmeter, measuring device, geiger counter",
-    size=length(0.9, 1.2),
-)
+@kind(words="voltmeter, measuring device, geiger counter", size=(0.9, 1.2))
 def multimeter(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
         "case",
         box(p(-0.045, 0, 0), p(0.045, 0.035, 0.18)),
         box(p(-0.035, -0.002, 0.12), p(0.035, 0.001, 0.165)),
-        color="yellow",
+        look="yellow",
     )
-    knob(b, "dial", parent="case", at=p(0, 0, 0.07), radius=0.025 * size, high=0.012 * size, out=-Y, reach=5.5)
-    b.part("stand", box(p(-0.03, 0.036, 0.02), p(0.03, 0.04, 0.12)), color="black")
-    b.hinge("stand", parent="case", axis=X, pivot=p(0, 0.036, 0.12), upper=0.7)
+    knob(b, "dial", "case", p(0, 0, 0.07), 0.025 * size, -Y, high=0.012 * size, reach=5.5)
+    b.part("stand", box(p(-0.03, 0.036, 0.02), p(0.03, 0.04, 0.12)), look="black")
+    b.hinge("stand", "case", X, p(0, 0.036, 0.12), 0.7)
 
 
 @kind(
-    "oscilloscope",
     words="signal generator, power supply, laboratory power supply, measuring instrument",
-    width=length(0.25, 0.4),
+    width=(0.25, 0.4),
     number=whole(3, 6, words="knob, dial"),
 )
 def oscilloscope(b: ObjectBuilder, width: float, number: int) -> None:
     h = 0.16
     b.part(
         "case",
-        box((-width / 2, 0, 0.01), (width / 2, 0.25, h)),
+        slab(width / 2, (0, 0.25), (0.01, h)),
         box((-0.45 * width, -0.003, 0.4 * h), (-0.02, 0.001, 0.92 * h)),
         [b.cylinder(0.01, (x, y, 0), (x, y, 0.011)) for x in (-0.4 * width, 0.4 * width) for y in (0.03, 0.22)],
-        material="metal",
-        color="grey",
+        look="grey metal",
     )
-    b.cut("case", box((-width / 2 + 0.004, 0.08, 0.015), (width / 2 - 0.004, 0.24, h - 0.005)))
+    b.cut("case", slab(width / 2 - 0.004, (0.08, 0.24), (0.015, h - 0.005)))
     for k in range(number):
         knob(
             b,
             f"knob_{k}",
-            parent="case",
-            at=(0.05 * width + 0.15 * width * (k % 3), 0, 0.75 * h if k < 3 else 0.3 * h),
-            radius=0.05 * width,
+            "case",
+            (0.05 * width + 0.15 * width * (k % 3), 0, 0.75 * h if k < 3 else 0.3 * h),
+            0.05 * width,
+            -Y,
             high=0.016,
-            out=-Y,
             reach=4.7,
         )
     bail(
         b,
         "handle",
-        parent="case",
-        start=(-width / 2, 0.05, 0.5 * h),
-        end=(width / 2, 0.05, 0.5 * h),
-        high=0.13,
-        thick=0.01,
-        up=-Y,
+        "case",
+        (-width / 2, 0.05, 0.5 * h),
+        (width / 2, 0.05, 0.5 * h),
+        0.13,
+        0.01,
+        -Y,
         lower=-0.6,
         upper=0.6,
     )
 
 
-@kind(
-    "protractor",
-    words="angle finder, bevel gauge, goniometer, angle gauge, t bevel",
-    length=length(0.15, 0.3),
-)
+@kind(words="angle finder, bevel gauge, goniometer, angle gauge, t bevel", length=(0.15, 0.3))
 def protractor(b: ObjectBuilder, length: float) -> None:
     b.part(
         "ruler",
-        box((-0.015, -0.012, 0), (length, 0.012, 0.004)),
-        b.cylinder(0.018, (0, 0, 0), (0, 0, 0.004)),
-        b.cylinder(0.004, (0, 0, 0), (0, 0, 0.012)),
-        material="steel",
+        slab((-0.015, length), 0.012, (0, 0.004)),
+        b.cylinder(0.018, 0, 0.004),
+        b.cylinder(0.004, 0, 0.012),
+        look="steel",
     )
     b.part(
-        "arm",
-        box((-0.015, -0.012, 0.0045), (length, 0.012, 0.0085)),
-        b.cylinder(0.018, (0, 0, 0.0045), (0, 0, 0.0085)),
-        material="steel",
-        color="yellow",
+        "arm", slab((-0.015, length), 0.012, (0.0045, 0.0085)), b.cylinder(0.018, 0.0045, 0.0085), look="yellow steel"
     )
-    b.cut("arm", b.cylinder(0.0045, (0, 0, 0), (0, 0, 1)))
-    b.hinge("arm", parent="ruler", axis=Z, pivot=(0, 0, 0), upper=3.1)
+    b.cut("arm", b.cylinder(0.0045, 0, 1))
+    b.hinge("arm", "ruler", Z, (0, 0, 0), 3.1)
 
 
-@kind(
-    "micrometer",
-    words="micrometer screw gauge, outside micrometer, screw gauge",
-    size=length(0.9, 1.3),
-)
+@kind(words="micrometer screw gauge, outside micrometer, screw gauge", size=(0.9, 1.3))
 def micrometer(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -554,33 +444,28 @@ def micrometer(b: ObjectBuilder, size: float) -> None:
         box(p(-0.045, -0.006, -0.006), p(-0.03, 0.012, 0.006)),
         b.cylinder(0.006 * size, p(0.03, 0.006, 0), p(0.075, 0.006, 0)),
         b.cylinder(0.003 * size, p(-0.035, 0.006, 0), p(-0.01, 0.006, 0)),
-        material="steel",
+        look="steel",
     )
     b.bore("frame", b.cylinder(0.0042 * size, p(0, 0.006, 0), p(0.2, 0.006, 0)))
-    b.part("spindle", b.cylinder(0.0032 * size, p(-0.005, 0.006, 0), p(0.1, 0.006, 0)), material="steel")
-    b.slide("spindle", parent="frame", axis=X, upper=0.03)
+    b.part("spindle", b.cylinder(0.0032 * size, p(-0.005, 0.006, 0), p(0.1, 0.006, 0)), look="steel")
+    b.slide("spindle", "frame", X, 0.03)
     b.part(
         "thimble",
         b.tube(0.009 * size, 0.0072 * size, p(0.05, 0.006, 0), p(0.085, 0.006, 0)),
         b.tube(0.009 * size, 0.004 * size, p(0.0855 - 0.001, 0.006, 0), p(0.095, 0.006, 0)),
-        material="chrome",
+        look="chrome",
     )
-    b.spin("thimble", parent="spindle", axis=X, pivot=p(0, 0.006, 0))
+    b.spin("thimble", "spindle", X, p(0, 0.006, 0))
 
 
-@kind(
-    "dial indicator",
-    words="dial gauge, pressure gauge, manometer, barometer, thermometer dial, gauge",
-    radius=length(0.025, 0.08),
-)
+@kind(words="dial gauge, pressure gauge, manometer, barometer, thermometer dial, gauge", radius=(0.025, 0.08))
 def dial_indicator(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "case",
         b.cylinder(r, (0, 0, 0), (0, 0.5 * r, 0)),
         b.cylinder(0.2 * r, (0, 0.25 * r, -0.9 * r), (0, 0.25 * r, -1.5 * r)),
-        material="metal",
-        color="white",
+        look="white metal",
     )
     b.cut("case", b.cylinder(0.9 * r, (0, -1, 0), (0, 0.12 * r, 0)))
     b.part("case", b.cylinder(0.05 * r, (0, 0.05 * r, 0), (0, 0.13 * r, 0)))
@@ -588,106 +473,80 @@ def dial_indicator(b: ObjectBuilder, radius: float) -> None:
         "needle",
         b.cylinder(0.09 * r, (0, 0.02 * r, 0), (0, 0.1 * r, 0)),
         beam(0.04 * r, 0.03 * r, (0, 0.06 * r, -0.25 * r), (0, 0.06 * r, 0.8 * r), Y),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.cut("needle", b.cylinder(0.06 * r, (0, -1, 0), (0, 1, 0)))
-    b.hinge("needle", parent="case", axis=Y, pivot=(0, 0, 0), upper=2.3, lower=-2.3)
+    b.hinge("needle", "case", Y, (0, 0, 0), 2.3, lower=-2.3)
 
 
-@kind(
-    "feeler gauge",
-    number=whole(3, 8, words="leaf, blade"),
-    length=length(0.08, 0.12),
-)
+@kind(number=whole(3, 8, words="leaf, blade"), length=(0.08, 0.12))
 def feeler_gauge(b: ObjectBuilder, number: int, length: float) -> None:
     b.part(
         "case",
-        [box((-0.012, -0.009, z), (length, 0.009, z + 0.0015)) for z in (0, 0.002 + 0.0022 * number)],
-        b.cylinder(0.003, (0, 0, 0), (0, 0, 0.003 + 0.0022 * number)),
+        [slab((-0.012, length), 0.009, (z, z + 0.0015)) for z in (0, 0.002 + 0.0022 * number)],
+        b.cylinder(0.003, 0, 0.003 + 0.0022 * number),
         box((length - 0.004, -0.009, 0), (length, -0.006, 0.003 + 0.0022 * number)),
-        material="steel",
+        look="steel",
     )
     for k in range(number):
         z = 0.002 + 0.0022 * k
-        b.part(f"leaf_{k}", box((-0.006, -0.005, z), (length - 0.008, 0.0065, z + 0.0016)), material="steel")
-        b.cut(f"leaf_{k}", b.cylinder(0.0036, (0, 0, -1), (0, 0, 1)))
-        b.hinge(f"leaf_{k}", parent="case", axis=Z, pivot=(0, 0, 0), upper=2.8)
+        b.part(f"leaf_{k}", box((-0.006, -0.005, z), (length - 0.008, 0.0065, z + 0.0016)), look="steel")
+        b.cut(f"leaf_{k}", b.cylinder(0.0036, -1, 1))
+        b.hinge(f"leaf_{k}", "case", Z, (0, 0, 0), 2.8)
 
 
-@kind(
-    "hand plane",
-    words="wood plane, block plane, planer",
-    length=length(0.16, 0.35),
-)
+@kind(words="wood plane, block plane, planer", length=(0.16, 0.35))
 def hand_plane(b: ObjectBuilder, length: float) -> None:
     b.part(
         "body",
-        box((0, -0.03, 0), (length, 0.03, 0.012)),
+        slab((0, length), 0.03, (0, 0.012)),
         [box((0.2 * length, s * 0.03, 0.01), (0.75 * length, s * 0.026, 0.04)) for s in (-1, 1)],
         beam(0.02, 0.035, (0.18 * length, 0, 0.01), (0.1 * length, 0, 0.1), Y),
         b.cylinder(0.008, (0.85 * length, 0, 0.01), (0.85 * length, 0, 0.03)),
         ball(0.018, (0.85 * length, 0, 0.042)),
         beam(0.04, 0.012, (0.3 * length, 0, 0.06), (0.55 * length, 0, 0.015), X),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.part("lever", beam(0.03, 0.008, (0.31 * length, 0, 0.075), (0.5 * length, 0, 0.042), X), material="brass")
-    b.hinge("lever", parent="body", axis=Y, pivot=(0.5 * length, 0, 0.042), upper=0.9, lower=0)
+    b.part("lever", beam(0.03, 0.008, (0.31 * length, 0, 0.075), (0.5 * length, 0, 0.042), X), look="brass")
+    b.hinge("lever", "body", Y, (0.5 * length, 0, 0.042), 0.9, lower=0)
 
 
-@kind(
-    "jib crane",
-    words="pillar crane, slewing crane, davit crane, davit",
-    height=length(1.8, 2.8),
-)
+@kind(words="pillar crane, slewing crane, davit crane, davit", height=(1.8, 2.8))
 def jib_crane(b: ObjectBuilder, height: float) -> None:
     reach = 0.8 * height
-    b.part(
-        "column",
-        b.cylinder(0.18, (0, 0, 0), (0, 0, 0.04)),
-        b.cylinder(0.07, (0, 0, 0.03), (0, 0, height)),
-        material="steel",
-        color="yellow",
-    )
+    b.part("column", b.cylinder(0.18, 0, 0.04), b.cylinder(0.07, 0.03, height), look="yellow steel")
     b.part(
         "jib",
-        b.tube(0.1, 0.073, (0, 0, 0.8 * height), (0, 0, height - 0.02)),
-        b.cylinder(0.1, (0, 0, height + 0.005), (0, 0, height + 0.03)),
-        b.tube(0.1, 0.073, (0, 0, height - 0.03), (0, 0, height + 0.01)),
-        box((0.09, -0.03, height - 0.12), (reach, 0.03, height - 0.02)),
+        b.tube(0.1, 0.073, 0.8 * height, height - 0.02),
+        b.cylinder(0.1, height + 0.005, height + 0.03),
+        b.tube(0.1, 0.073, height - 0.03, height + 0.01),
+        slab((0.09, reach), 0.03, (height - 0.12, height - 0.02)),
         beam(0.04, 0.04, (0.09, 0, 0.82 * height), (0.5 * reach, 0, height - 0.1), Y),
-        material="steel",
-        color="yellow",
+        look="yellow steel",
     )
-    b.hinge("jib", parent="column", axis=Z, pivot=(0, 0, 0), upper=3.0, lower=-3.0)
+    b.hinge("jib", "column", Z, (0, 0, 0), 3.0, lower=-3.0)
     b.part(
         "trolley",
-        box((0.6 * reach - 0.05, -0.05, height - 0.2), (0.6 * reach + 0.05, 0.05, height - 0.124)),
+        slab((0.6 * reach - 0.05, 0.6 * reach + 0.05), 0.05, (height - 0.2, height - 0.124)),
         [
             box((0.6 * reach - 0.05, s * 0.034, height - 0.13), (0.6 * reach + 0.05, s * 0.05, height - 0.06))
             for s in (-1, 1)
         ],
         b.cylinder(0.008, (0.6 * reach, 0, height - 0.45), (0.6 * reach, 0, height - 0.19)),
-        material="steel",
+        look="steel",
     )
     b.cut("trolley", b.cylinder(0.008, (0.6 * reach, 0, 0), (0.6 * reach, 0, height - 0.198)))
-    b.slide("trolley", parent="jib", axis=X, upper=0.33 * reach, lower=-0.05 * reach)
+    b.slide("trolley", "jib", X, 0.33 * reach, lower=-0.05 * reach)
     b.part(
         "hook",
         b.cylinder(0.006, (0.6 * reach, 0, height - 0.5), (0.6 * reach, 0, height - 0.201)),
         b.torus(0.04, 0.01, (0.6 * reach, 0, height - 0.55), Y),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.slide("hook", parent="trolley", axis=-Z, upper=0.5 * height)
+    b.slide("hook", "trolley", -Z, 0.5 * height)
 
 
-@kind(
-    "hose nozzle",
-    words="garden spray gun, shower gun",
-    size=length(0.9, 1.2),
-)
+@kind(words="garden spray gun, shower gun", size=(0.9, 1.2))
 def hose_nozzle(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -695,68 +554,50 @@ def hose_nozzle(b: ObjectBuilder, size: float) -> None:
         b.cylinder(0.014 * size, p(-0.1, 0, 0), p(0.02, 0, 0.06)),
         b.cylinder(0.014 * size, p(0, 0, 0.06), p(0.06, 0, 0.06)),
         [box(p(-0.01, s * 0.014, 0.06), p(0.015, s * 0.009, 0.085)) for s in (-1, 1)],
-        color="green",
+        look="green",
     )
-    b.part("head", b.cylinder(0.024 * size, p(0.061, 0, 0.06), p(0.09, 0, 0.06)), color="black")
-    b.spin("head", parent="body", axis=X, pivot=p(0, 0, 0.06))
-    b.part("lever", beam(0.012 * size, 0.005 * size, p(0.006, 0, 0.081), p(-0.1, 0, 0.055)), material="metal")
-    b.hinge("lever", parent="body", axis=-Y, pivot=p(0.006, 0, 0.081), upper=0.2, lower=-0.1)
+    b.part("head", b.cylinder(0.024 * size, p(0.061, 0, 0.06), p(0.09, 0, 0.06)), look="black")
+    b.spin("head", "body", X, p(0, 0, 0.06))
+    b.part("lever", beam(0.012 * size, 0.005 * size, p(0.006, 0, 0.081), p(-0.1, 0, 0.055)), look="metal")
+    b.hinge("lever", "body", -Y, p(0.006, 0, 0.081), 0.2, lower=-0.1)
 
 
 @kind(
-    "garden cart",
     words=(
         "dump cart, garden wagon, hand wagon, bollerwagen, pull wagon, wagon, toy wagon, handcart, pull cart, "
         "hand cart, beach wagon"
     ),
-    length=length(0.7, 1.1),
-    width=length(0.45, 0.6),
+    length=(0.7, 1.1),
+    width=(0.45, 0.6),
 )
 def garden_cart(b: ObjectBuilder, length: float, width: float) -> None:
     b.part(
         "frame",
-        box((-length / 2, -0.06, 0.2), (length / 2, 0.06, 0.25)),
-        [box((x - 0.03, -width / 2, 0.13), (x + 0.03, width / 2, 0.201)) for x in (-0.35 * length, 0.35 * length)],
+        slab(length / 2, 0.06, (0.2, 0.25)),
+        [slab((x - 0.03, x + 0.03), width / 2, (0.13, 0.201)) for x in (-0.35 * length, 0.35 * length)],
         [box((length / 2 - 0.01, s * 0.03, 0.2), (length / 2 + 0.05, s * 0.022, 0.26)) for s in (-1, 1)],
-        material="steel",
-        color="black",
+        look="black steel",
     )
     for k, (x, s) in enumerate([(x, s) for x in (-0.35 * length, 0.35 * length) for s in (-1, 1)]):
-        wheel(
-            b,
-            f"wheel_{k}",
-            parent="frame",
-            middle=(x, s * (width / 2 + 0.05), 0.14),
-            radius=0.14,
-            wide=0.06,
-            out=s * Y,
-            axle=0.015,
-        )
+        wheel(b, f"wheel_{k}", "frame", (x, s * (width / 2 + 0.05), 0.14), 0.14, 0.06, s * Y, axle=0.015)
     b.part(
         "tub",
-        box((-length / 2, -width / 2, 0.29), (length / 2, width / 2, 0.52)),
+        slab(length / 2, width / 2, (0.29, 0.52)),
         [box((-length / 2, s * 0.06, 0.262), (length / 2 - 0.02, s * 0.02, 0.291)) for s in (-1, 1)],
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.cut("tub", box((-length / 2 + 0.008, -width / 2 + 0.008, 0.3), (length / 2 - 0.008, width / 2 - 0.008, 1)))
-    b.hinge("tub", parent="frame", axis=-Y, pivot=(-length / 2, 0, 0.255), upper=0.9)
+    b.cut("tub", slab(length / 2 - 0.008, width / 2 - 0.008, (0.3, 1)))
+    b.hinge("tub", "frame", -Y, (-length / 2, 0, 0.255), 0.9)
     b.part(
         "handle",
         beam(0.025, 0.025, (length / 2 + 0.03, 0, 0.23), (length / 2 + 0.45, 0, 0.75), Y),
         b.cylinder(0.014, (length / 2 + 0.45, -0.1, 0.75), (length / 2 + 0.45, 0.1, 0.75)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.hinge("handle", parent="frame", axis=Y, pivot=(length / 2 + 0.03, 0, 0.23), upper=0.7, lower=-0.2)
+    b.hinge("handle", "frame", Y, (length / 2 + 0.03, 0, 0.23), 0.7, lower=-0.2)
 
 
-@kind(
-    "compost tumbler",
-    words="rotating drum, bingo cage, lottery drum, raffle drum",
-    radius=length(0.15, 0.32),
-    length=length(0.4, 0.8),
-)
+@kind(words="rotating drum, bingo cage, lottery drum, raffle drum", radius=(0.15, 0.32), length=(0.4, 0.8))
 def compost_tumbler(b: ObjectBuilder, radius: float, length: float) -> None:
     z = radius + 0.35
     l = length / 2
@@ -768,32 +609,26 @@ def compost_tumbler(b: ObjectBuilder, radius: float, length: float) -> None:
             for t in (-1, 1)
         ],
         b.cylinder(0.014, (-l - 0.05, 0, z), (l + 0.05, 0, z)),
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.part("drum", b.cylinder(radius, (-l, 0, z), (l, 0, z)), color="dark green")
+    b.part("drum", b.cylinder(radius, (-l, 0, z), (l, 0, z)), look="dark green")
     b.cut(
         "drum",
         b.cylinder(radius - 0.008, (-l + 0.008, 0, z), (l - 0.008, 0, z)),
         b.cylinder(0.017, (-1, 0, z), (1, 0, z)),
-        box((-0.4 * l, -0.4 * radius, z), (0.4 * l, 0.4 * radius, z + 2)),
+        slab(0.4 * l, 0.4 * radius, (z, z + 2)),
     )
-    b.spin("drum", parent="stand", axis=X, pivot=(0, 0, z))
+    b.spin("drum", "stand", X, (0, 0, z))
     b.part(
         "hatch",
-        box((-0.45 * l, -0.45 * radius, z + radius + 0.001), (0.45 * l, 0.45 * radius, z + radius + 0.008)),
-        box((-0.03, -0.4 * radius, z + radius + 0.007), (0.03, -0.35 * radius, z + radius + 0.03)),
-        color="black",
+        slab(0.45 * l, 0.45 * radius, (z + radius + 0.001, z + radius + 0.008)),
+        slab(0.03, (-0.4 * radius, -0.35 * radius), (z + radius + 0.007, z + radius + 0.03)),
+        look="black",
     )
-    b.hinge("hatch", parent="drum", axis=-X, pivot=(0, 0.45 * radius, z + radius + 0.001), upper=1.8)
+    b.hinge("hatch", "drum", -X, (0, 0.45 * radius, z + radius + 0.001), 1.8)
 
 
-@kind(
-    "rain barrel",
-    words="rain butt, water barrel, wine barrel, barrel, cask",
-    radius=length(0.2, 0.35),
-    height=length(0.6, 1.0),
-)
+@kind(words="rain butt, water barrel, wine barrel, barrel, cask", radius=(0.2, 0.35), height=(0.6, 1.0))
 def rain_barrel(b: ObjectBuilder, radius: float, height: float) -> None:
     r = radius
     b.part(
@@ -803,8 +638,7 @@ def rain_barrel(b: ObjectBuilder, radius: float, height: float) -> None:
         ),
         b.cylinder(0.02, (0, -0.85 * r, 0.15 * height), (0, -r - 0.07, 0.15 * height)),
         b.cylinder(0.012, (0, -r - 0.06, 0.15 * height), (0, -r - 0.06, 0.15 * height - 0.05)),
-        material="wood",
-        color="brown",
+        look="brown wood",
     )
     b.cut(
         "barrel",
@@ -823,65 +657,41 @@ def rain_barrel(b: ObjectBuilder, radius: float, height: float) -> None:
     )
     b.part(
         "lid",
-        b.cylinder(0.8 * r, (0, 0, height + 0.001), (0, 0, height + 0.025)),
-        box((-0.05, -0.015, height + 0.02), (0.05, 0.015, height + 0.05)),
-        material="wood",
+        b.cylinder(0.8 * r, height + 0.001, height + 0.025),
+        slab(0.05, 0.015, (height + 0.02, height + 0.05)),
+        look="wood",
     )
-    b.slide("lid", parent="barrel", axis=Z, upper=0.3)
-    knob(
-        b,
-        "tap",
-        parent="barrel",
-        at=(0, -r - 0.03, 0.15 * height + 0.02),
-        radius=0.014,
-        high=0.03,
-        out=Z,
-        reach=1.57,
-        material="brass",
-    )
+    b.slide("lid", "barrel", Z, 0.3)
+    knob(b, "tap", "barrel", (0, -r - 0.03, 0.15 * height + 0.02), 0.014, Z, high=0.03, reach=1.57, material="brass")
 
 
-@kind(
-    "chicken coop",
-    words="rabbit hutch, dog house, pet house, hen house",
-    width=length(0.5, 1.2),
-    height=length(0.5, 1.0),
-)
+@kind(words="rabbit hutch, dog house, pet house, hen house", width=(0.5, 1.2), height=(0.5, 1.0))
 def chicken_coop(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     t = 0.35 * width
     b.part(
         "house",
-        box((-w, -t, 0.1), (w, t, height)),
+        slab(w, t, (0.1, height)),
         [
             box((x - 0.025, y - 0.025, 0), (x + 0.025, y + 0.025, 0.11))
             for x in (-w + 0.025, w - 0.025)
             for y in (-t + 0.025, t - 0.025)
         ],
-        material="wood",
+        look="wood",
     )
     b.cut(
         "house",
-        box((-w + 0.015, -t + 0.015, 0.115), (w - 0.015, t - 0.015, height + 1)),
+        slab(w - 0.015, t - 0.015, (0.115, height + 1)),
         box((-0.7 * w, -t - 1, 0.15), (-0.1 * w, 0, 0.8 * height)),
         box((0.2 * w, -t - 1, 0.4 * height), (0.8 * w, 0, 0.75 * height)),
     )
-    leaf(
-        b,
-        "door",
-        parent="house",
-        lower=(-0.75 * w, -t - 0.018, 0.13),
-        upper=(-0.05 * w, -t, 0.84 * height),
-        hinge=-X,
-        out=-Y,
-        reach=1.9,
-    )
+    leaf(b, "door", "house", (-0.75 * w, -t - 0.018, 0.13), (-0.05 * w, -t, 0.84 * height), hinge=-X, out=-Y, reach=1.9)
     leaf(
         b,
         "roof",
-        parent="house",
-        lower=(-w - 0.03, -t - 0.06, height),
-        upper=(w + 0.03, t, height + 0.02),
+        "house",
+        (-w - 0.03, -t - 0.06, height),
+        (w + 0.03, t, height + 0.02),
         hinge=Y,
         out=Z,
         reach=1.2,
@@ -889,72 +699,49 @@ def chicken_coop(b: ObjectBuilder, width: float, height: float) -> None:
     )
 
 
-@kind(
-    "beehive",
-    words="bee hive",
-    number=whole(3, 6, words="frame"),
-)
+@kind(words="bee hive", number=whole(3, 6, words="frame"))
 def beehive(b: ObjectBuilder, number: int) -> None:
     b.part(
         "box",
-        box((-0.25, -0.2, 0.05), (0.25, 0.2, 0.3)),
-        [box((x - 0.03, -0.2, 0), (x + 0.03, 0.2, 0.051)) for x in (-0.2, 0.2)],
-        material="wood",
+        slab(0.25, 0.2, (0.05, 0.3)),
+        [slab((x - 0.03, x + 0.03), 0.2, (0, 0.051)) for x in (-0.2, 0.2)],
+        look="wood",
     )
-    b.cut("box", box((-0.23, -0.18, 0.07), (0.23, 0.18, 1)), box((-0.1, -0.3, 0.07), (0.1, 0, 0.085)))
+    b.cut("box", slab(0.23, 0.18, (0.07, 1)), slab(0.1, (-0.3, 0), (0.07, 0.085)))
     for k, x in enumerate(spread(number, -0.22, 0.22)):
-        b.part(f"frame_{k}", box((x - 0.012, -0.17, 0.09), (x + 0.012, 0.17, 0.295)), material="wood", color="yellow")
-        b.slide(f"frame_{k}", parent="box", axis=Z, upper=0.004)
-    b.part("lid", box((-0.27, -0.22, 0.305), (0.27, 0.22, 0.35)), material="metal")
-    b.slide("lid", parent="box", axis=Z, upper=0.3)
+        b.part(f"frame_{k}", slab((x - 0.012, x + 0.012), 0.17, (0.09, 0.295)), look="yellow wood")
+        b.slide(f"frame_{k}", "box", Z, 0.004)
+    b.part("lid", slab(0.27, 0.22, (0.305, 0.35)), look="metal")
+    b.slide("lid", "box", Z, 0.3)
 
 
-@kind(
-    "log splitter",
-    words="wood splitter, hydraulic splitter",
-    length=length(1.2, 1.7),
-)
+@kind(words="wood splitter, hydraulic splitter", length=(1.2, 1.7))
 def log_splitter(b: ObjectBuilder, length: float) -> None:
     b.part(
         "beam",
-        box((0, -0.08, 0.35), (length, 0.08, 0.45)),
-        box((length - 0.08, -0.015, 0.44), (length - 0.02, 0.015, 0.65)),
+        slab((0, length), 0.08, (0.35, 0.45)),
+        slab((length - 0.08, length - 0.02), 0.015, (0.44, 0.65)),
         b.cylinder(0.06, (0, 0, 0.54), (0.35 * length, 0, 0.54)),
-        box((0, -0.05, 0.44), (0.04, 0.05, 0.6)),
-        box((0.3 * length, -0.05, 0.44), (0.33 * length, 0.05, 0.5)),
-        box((length - 0.1, -0.03, 0), (length - 0.04, 0.03, 0.36)),
-        box((0.2 * length - 0.04, -0.2, 0.18), (0.2 * length + 0.04, 0.2, 0.36)),
-        material="steel",
-        color="red",
+        slab((0, 0.04), 0.05, (0.44, 0.6)),
+        slab((0.3 * length, 0.33 * length), 0.05, (0.44, 0.5)),
+        slab((length - 0.1, length - 0.04), 0.03, (0, 0.36)),
+        slab((0.2 * length - 0.04, 0.2 * length + 0.04), 0.2, (0.18, 0.36)),
+        look="red steel",
     )
     b.bore("beam", b.cylinder(0.032, (0.05, 0, 0.54), (length * 0.5, 0, 0.54)))
     b.part(
         "ram",
         b.cylinder(0.028, (0.08, 0, 0.54), (0.42 * length, 0, 0.54)),
-        box((0.4 * length, -0.07, 0.452), (0.44 * length, 0.07, 0.63)),
-        material="steel",
+        slab((0.4 * length, 0.44 * length), 0.07, (0.452, 0.63)),
+        look="steel",
     )
-    b.slide("ram", parent="beam", axis=X, upper=0.25 * length)
+    b.slide("ram", "beam", X, 0.25 * length)
     for k, s in enumerate((-1, 1)):
-        wheel(
-            b,
-            f"wheel_{k}",
-            parent="beam",
-            middle=(0.2 * length, s * 0.255, 0.2),
-            radius=0.2,
-            wide=0.1,
-            out=s * Y,
-            axle=0.005,
-        )
-    lever(b, "lever", parent="beam", at=(0.3 * length, -0.08, 0.4), out=-Y, along=Z, length=0.2, reach=0.5, lower=-0.5)
+        wheel(b, f"wheel_{k}", "beam", (0.2 * length, s * 0.255, 0.2), 0.2, 0.1, s * Y, axle=0.005)
+    lever(b, "lever", "beam", (0.3 * length, -0.08, 0.4), -Y, Z, 0.2, reach=0.5, lower=-0.5)
 
 
-@kind(
-    "garden roller",
-    words="lawn roller",
-    width=length(0.3, 0.6),
-    radius=length(0.1, 0.2),
-)
+@kind(words="lawn roller", width=(0.3, 0.6), radius=(0.1, 0.2))
 def garden_roller(b: ObjectBuilder, width: float, radius: float) -> None:
     w = width / 2
     b.part(
@@ -962,19 +749,14 @@ def garden_roller(b: ObjectBuilder, width: float, radius: float) -> None:
         [beam(0.02, 0.02, (s * (w + 0.025), 0, radius), (s * (w + 0.025), 0.5, 0.9), X) for s in (-1, 1)],
         b.cylinder(0.014, (-w - 0.035, 0.5, 0.9), (w + 0.035, 0.5, 0.9)),
         b.cylinder(0.012, (-w - 0.03, 0, radius), (w + 0.03, 0, radius)),
-        material="steel",
-        color="green",
+        look="green steel",
     )
-    b.part("drum", b.cylinder(radius, (-w, 0, radius), (w, 0, radius)), color="green")
+    b.part("drum", b.cylinder(radius, (-w, 0, radius), (w, 0, radius)), look="green")
     b.cut("drum", b.cylinder(0.014, (-1, 0, radius), (1, 0, radius)))
-    b.spin("drum", parent="handle", axis=X, pivot=(0, 0, radius))
+    b.spin("drum", "handle", X, (0, 0, radius))
 
 
-@kind(
-    "snow blower",
-    words="snow thrower, snowblower",
-    size=length(0.9, 1.2),
-)
+@kind(words="snow thrower, snowblower", size=(0.9, 1.2))
 def snow_blower(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -986,8 +768,7 @@ def snow_blower(b: ObjectBuilder, size: float) -> None:
         b.rod(0.014 * size, p(-0.25, 0.8, 0.95), p(0.25, 0.8, 0.95)),
         [b.cylinder(0.02 * size, p(s * 0.19, 0.15, 0.2), p(s * 0.235, 0.15, 0.2)) for s in (-1, 1)],
         box(p(-0.19, 0.1, 0.15), p(0.19, 0.2, 0.25)),
-        material="steel",
-        color="red",
+        look="red steel",
     )
     b.cut("body", box(p(-0.28, -1, 0.07), p(0.28, -0.14, 0.45)))
     b.bore("body", b.cylinder(0.022 * size, p(-1, -0.32, 0.26), p(1, -0.32, 0.26)))
@@ -1003,26 +784,15 @@ def snow_blower(b: ObjectBuilder, size: float) -> None:
             )
             for x in (-0.22, -0.11, 0, 0.11, 0.22)
         ],
-        material="steel",
-        color="black",
+        look="black steel",
     )
-    b.spin("auger", parent="body", axis=X, pivot=p(0, -0.32, 0.26))
+    b.spin("auger", "body", X, p(0, -0.32, 0.26))
     b.part(
         "chute",
         b.cylinder(0.07 * size, p(0, -0.2, 0.542), p(0, -0.2, 0.6)),
         beam(0.12 * size, 0.02 * size, p(0, -0.24, 0.58), p(0, -0.3, 0.85), Y),
-        material="steel",
-        color="red",
+        look="red steel",
     )
-    b.hinge("chute", parent="body", axis=Z, pivot=p(0, -0.2, 0), upper=1.6, lower=-1.6)
+    b.hinge("chute", "body", Z, p(0, -0.2, 0), 1.6, lower=-1.6)
     for k, s in enumerate((-1, 1)):
-        wheel(
-            b,
-            f"wheel_{k}",
-            parent="body",
-            middle=p(s * 0.29, 0.15, 0.2),
-            radius=0.2 * size,
-            wide=0.1 * size,
-            out=s * X,
-            axle=0.004 * size,
-        )
+        wheel(b, f"wheel_{k}", "body", p(s * 0.29, 0.15, 0.2), 0.2 * size, 0.1 * size, s * X, axle=0.004 * size)

@@ -12,6 +12,7 @@ import numpy as np
 
 from kinematify.generate.procedural import solids
 from kinematify.generate.procedural.blueprint import BlueprintJoint
+from kinematify.generate.procedural.materials import MATERIALS
 from kinematify.generate.procedural.solids import flat, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
-    from kinematify.generate.procedural.materials import RGB
     from kinematify.generate.procedural.solids import Point, Solids
     from kinematify.generate.procedural.workshop import Look, Workshop
 
@@ -120,12 +120,18 @@ class ObjectBuilder:
 
     # ---- parts -----------------------------------------------------------------------------------------------------
 
-    def part(self, name: str, *solids: Solids, material: str = "plastic", color: str | RGB | None = None) -> str:
-        """Add a part, or shapes to a part that is there; returns its name."""
+    def part(self, name: str, *solids: Solids, look: str | Look = "plastic") -> str:
+        """Add a part, or shapes to a part that is there; returns its name.
+
+        Args:
+            name: Of the part.
+            solids: Its shapes.
+            look: ``steel``, ``red steel`` or ``red``, which is of plastic; or material and colour.
+        """
         shapes = flat(solids)
         if any(shape.is_empty() for shape in shapes):
             raise ValueError(f"a shape of {name} has no volume")
-        self._parts.setdefault(name, _Drawn(look=(material, color))).solids.extend(shapes)
+        self._parts.setdefault(name, _Drawn(look=look_of(look))).solids.extend(shapes)
         return name
 
     def painted(self, *shapes: Manifold, material: str, color: str | None = None) -> Sequence[Manifold]:
@@ -134,8 +140,7 @@ class ObjectBuilder:
 
     def front(self, name: str, parent: str, *shapes: Solids, material: str | None = None) -> str:
         """Add a part that looks like its parent, unless a material is given; returns its name."""
-        look = (material, None) if material else self._parts[parent].look
-        return self.part(name, *shapes, material=look[0], color=look[1])
+        return self.part(name, *shapes, look=material or self._parts[parent].look)
 
     def cut(self, name: str, *shapes: Solids) -> None:
         """Take shapes away from a part."""
@@ -222,6 +227,14 @@ class ObjectBuilder:
             if found[name].is_empty():
                 raise ValueError(f"nothing is left of the part {name}")
         return found
+
+
+def look_of(said: str | Look) -> Look:
+    """Return material and colour of a look, plastic where it names a colour alone."""
+    if not isinstance(said, str):
+        return said
+    color, _, material = ("", "", said) if said in MATERIALS else said.rpartition(" ")
+    return (material, color or None) if material in MATERIALS else ("plastic", said)
 
 
 @contextmanager

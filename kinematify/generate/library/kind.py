@@ -1,16 +1,16 @@
 """Kinds of objects: names, bounded parameters, and the function that makes one; those in Python draw with a builder.
 
 ```python
-@kind("moka pot", words="stovetop espresso maker, espresso pot", radius=length(0.035, 0.055), height=length(0.13, 0.2))
+@kind(words="stovetop espresso maker, espresso pot", radius=(0.035, 0.055), height=(0.13, 0.2))
 def moka_pot(b: ObjectBuilder, radius: float, height: float) -> None:
-    b.part("pot", b.cylinder(radius, (0, 0, 0), (0, 0, height)), material="metal")
-    b.part("lid", b.cylinder(radius, (0, 0, height + 0.001), (0, 0, height + 0.02)), material="metal")
-    b.hinge("lid", parent="pot", axis=-X, pivot=(0, radius, height + 0.001), upper=1.7)
+    b.part("pot", b.cylinder(radius, 0, height), look="metal")
+    b.part("lid", b.cylinder(radius, height + 0.001, height + 0.02), look="metal")
+    b.hinge("lid", "pot", -X, (0, radius, height + 0.001), 1.7)
 ```
 
-The name of the function is the name of the kind, less a ``_`` at its end. A function whose first parameter is a
-`Workshop` carves instead: what it adds and cuts takes effect at once. Whether it names `open` or `clearance` besides
-its parameters decides if it is given them.
+The name of the function is the name of the kind, less a ``_`` at its end; two numbers bound a length. A function whose
+first parameter is a `Workshop` carves instead: what it adds and cuts takes effect at once. Whether it names `open` or
+`clearance` besides its parameters decides if it is given them.
 """
 
 from __future__ import annotations
@@ -264,7 +264,7 @@ COMMON = tuple(replace(item, name=name) for name, item in _COMMON.items())
 
 
 def kind(
-    called: str,
+    called: str = "",
     *,
     words: str = "",
     title: str = "",
@@ -275,12 +275,12 @@ def kind(
     usual: Mapping[str, Mapping[str, Value]] | None = None,
     styles: bool = True,
     walls: float | None = None,
-    **parameters: Parameter,
+    **parameters: Parameter | _Range,
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Return a decorator that registers the function that draws a kind of object.
 
     Args:
-        called: How people call it, singular.
+        called: How people call it, singular; as the function if empty.
         words: Other names, split at their commas.
         title: A few words for lists; `called` if empty.
         like: The kind that it is another way to build, which `all_kinds` leaves out; empty of a kind of its own.
@@ -290,12 +290,14 @@ def kind(
         usual: Names, split at their commas -> what is usual of those that are called so.
         styles: It may be modelled in any of `MODELING`; of what is drawn alone.
         walls: Of `Kind`.
-        parameters: What may be asked for, under its name.
+        parameters: What may be asked for, under its name; two numbers bound a length.
     """
-    asked = tuple(replace(item, name=name) for name, item in parameters.items())
+    given = {name: length(*item) if isinstance(item, tuple) else item for name, item in parameters.items()}
+    asked = tuple(replace(item, name=name) for name, item in given.items())
 
     def register(draw: Callable[..., None]) -> Callable[..., None]:
         name = draw.__name__.rstrip("_")
+        said = called or name.replace("_", " ")
         if name in KINDS:
             raise ValueError(f"two kinds are called {name}")
         code = draw.__code__
@@ -304,8 +306,8 @@ def kind(
         modeling = choice(tuple(MODELING), help="How it is modelled.", drawn=False)
         KINDS[name] = Kind(
             name=name,
-            title=title or called,
-            words=(called, *phrases(words)),
+            title=title or said,
+            words=(said, *phrases(words)),
             parameters=(
                 *asked,
                 *details_of(details or {}),

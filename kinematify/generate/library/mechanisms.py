@@ -36,7 +36,7 @@ def case(
     size = high - low
     thick = wall or 0.06 * float(size.min())
     whole = rounded_block(size, 0.15 * thick).translate(0.5 * (low + high)) if d.style.rounded else box(low, high)
-    d.part(name, whole, material=material)
+    d.part(name, whole, look=material)
     if d.style.hollow and opening is not None:
         out = np.asarray(opening)
         d.cut(name, box(low + thick + np.minimum(2 * out * thick, 0), high - thick + np.maximum(2 * out * thick, 0)))
@@ -68,7 +68,7 @@ def wheel(
     at = np.asarray(middle, dtype=np.float64)
     inner, outer = at - 0.5 * wide * out, at + 0.5 * wide * out
     if d.style.wheel == "disc":
-        d.part(name, d.cylinder(radius, inner, outer), material=material)
+        d.part(name, d.cylinder(radius, inner, outer), look=material)
     elif d.style.wheel == "tyre":
         wire = min(0.5 * wide, 0.3 * radius)
         d.part(
@@ -129,7 +129,7 @@ def knob(
     foot = at + (gap - d.style.max_penetration * high) * out
     top = at + high * out
     side = _across(out, (1.0, 1.0))[1]
-    d.part(name, material=material)
+    d.part(name, look=material)
     if d.style.has_bore:
         _shaft(d, name, parent, at, 0.3 * radius, out, deep or 0.6 * high, gap)
         foot = at + gap * out
@@ -149,7 +149,7 @@ def knob(
             *(beam(0.3 * radius, 0.6 * high, 0.5 * (foot + top), 0.5 * (foot + top) + radius * a, out) for a in arms),
         )
     else:
-        d.part(name, d.cylinder(radius, foot, top), material=material)
+        d.part(name, d.cylinder(radius, foot, top), look=material)
     if kind == "pointer":
         d.part(name, beam(0.16 * radius, 0.4 * high, top, top + 0.95 * radius * side, out))
     if reach is None:
@@ -186,7 +186,7 @@ def button(
     low, high_end = at + (0.0 if deep else gap) * out - deep * out, at + high * out
     if is_round:
         d.bore(parent, d.cylinder(0.5 * size[0] + 1.5 * gap, at - (deep + high) * out, at + 0.05 * high * out))
-        d.part(name, d.cylinder(0.5 * size[0], low, high_end), material=material)
+        d.part(name, d.cylinder(0.5 * size[0], low, high_end), look=material)
     else:
         wide, tall = _across(out, size)
         half = 0.5 * (wide + tall)
@@ -194,7 +194,7 @@ def button(
             parent,
             box(at - half - gap * _ones(out) - (deep + high) * out, at + half + gap * _ones(out) + 0.05 * high * out),
         )
-        d.part(name, box(low - half, high_end + half), material=material)
+        d.part(name, box(low - half, high_end + half), look=material)
     d.slide(name, parent, -out, 0.7 * high, ajar=False)
 
 
@@ -233,7 +233,7 @@ def lever(
     bar = d.pick(d.rod, d.cylinder)
     for face, away in ((at, out), (at - through * out, -out))[: 2 if through else 1]:
         level = face + far * away
-        d.part(name, bar(0.5 * thick, level, level + length * direction), material=material)
+        d.part(name, bar(0.5 * thick, level, level + length * direction), look=material)
         d.part(name, d.cylinder(0.45 * thick, face + (gap - (2.0 * thick if d.style.has_bore else 0.0)) * away, level))
         d.bore(parent, d.cylinder(0.45 * thick + 1.5 * gap, face - 2.5 * thick * away, face + thick * away))
     d.hinge(name, parent, np.sign(reach) * out, at, abs(reach), lower)
@@ -271,10 +271,10 @@ def arm(
     half = 0.5 * thick * axis
     kind = d.pick("beam", "beam", "rod", "plate")
     if kind == "rod" and not d.style.has_bore:
-        d.part(name, d.rod(0.5 * thick, a, b), material="metal")
+        d.part(name, d.rod(0.5 * thick, a, b), look="metal")
     else:
         wide = thick if kind == "beam" else 1.4 * thick
-        d.part(name, beam(wide, 0.9 * thick, a, b, axis), material="metal")
+        d.part(name, beam(wide, 0.9 * thick, a, b, axis), look="metal")
         d.part(name, *(d.cylinder(0.5 * wide, p - 0.45 * thick * axis, p + 0.45 * thick * axis) for p in (a, b)))
     if d.style.has_bore:
         gap = d.gap(thick)
@@ -304,7 +304,7 @@ def plunger(
     a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
     out = (a - b) / float(np.linalg.norm(a - b))
     gap = d.gap(radius)
-    d.part(name, d.cylinder(radius, a, b), material="metal")
+    d.part(name, d.cylinder(radius, a, b), look="metal")
     d.bore(parent, d.cylinder(radius + 1.5 * gap, a, b - gap * out))
     d.slide(name, parent, out, travel)
 
@@ -370,9 +370,9 @@ def caster(
         fork,
         d.cylinder(0.35 * radius, at - gap * Z, plate),
         block(plate, (1.6 * radius, 1.8 * wide, 0.1 * high)),
-        material="steel",
+        look="steel",
     )
-    d.part(name, d.cylinder(radius, axle - 0.45 * wide * Y, axle + 0.45 * wide * Y), material="rubber")
+    d.part(name, d.cylinder(radius, axle - 0.45 * wide * Y, axle + 0.45 * wide * Y), look="rubber")
     if d.style.has_bore:
         d.cut(parent, d.cylinder(0.2 * radius + 1.5 * gap, at - 0.1 * high * Z, at + (deep + 0.02 * high) * Z))
         d.part(fork, d.cylinder(0.2 * radius, at - 0.1 * high * Z, at + deep * Z))
@@ -403,7 +403,7 @@ def hand_wheel(
     level, side = at + (gap + 3.0 * wire) * out, _across(out, (1.0, 1.0))[1]
     for angle in np.arange(spokes) * 2.0 * np.pi / spokes:
         tip = level + radius * (np.cos(angle) * side + np.sin(angle) * np.cross(side, out))
-        d.part(name, d.rod((0.6 if rim else 0.8) * wire, level, tip), material="metal")
+        d.part(name, d.rod((0.6 if rim else 0.8) * wire, level, tip), look="metal")
     if rim:
         d.part(name, d.torus(radius, wire, level, out))
     d.part(name, d.cylinder(1.5 * wire, at + gap * out, level))
@@ -436,12 +436,12 @@ def crank(
         name,
         d.cylinder(0.5 * thick, start, level),
         beam(thick, 0.8 * thick, level - 0.6 * thick * along, level + length * along, out),
-        material="metal",
+        look="metal",
     )
     foot = level + 0.9 * length * along + (0.4 * thick + gap) * out
     handle = d.cylinder(0.7 * thick, foot, foot + 0.5 * length * out)
     if spins and d.maybe(0.4):
-        d.part(f"{name}_grip", handle, material="wood")
+        d.part(f"{name}_grip", handle, look="wood")
         d.spin(f"{name}_grip", name, out, foot)
     else:
         low = foot - (0.4 * thick + gap) * out
@@ -473,7 +473,7 @@ def bail(
         return d.cylinder(r, start, end) if d.style.sides > 12 else beam(2 * r, 2 * r, start, end)
 
     posts = [bar(foot - 0.8 * thick * up, foot + high * up) for foot in (a, b)]
-    d.part(name, *posts, bar(a + high * up - r * along, b + high * up + r * along), material="metal")
+    d.part(name, *posts, bar(a + high * up - r * along, b + high * up + r * along), look="metal")
     if d.style.has_bore:
         d.part(
             name,
@@ -518,31 +518,6 @@ def in_fork(d: ObjectBuilder, name: str, parent: str, middle: Point, radius: flo
     bridge = max(top - 0.3 * wide, at[2] + radius + play)
     d.part(parent, box((at[0] - reach, at[1] - length, bridge), (at[0] + reach, at[1] + length, bridge + 0.3 * wide)))
     wheel(d, name, parent, at, radius, wide, X)
-
-
-def pinned(
-    d: ObjectBuilder,
-    name: str,
-    parent: str,
-    arms: Sequence[Sequence[Manifold]],
-    r: float,
-    low: float,
-    high: float,
-    upper: float,
-    lower: float,
-) -> None:
-    """Two arms that cross at the origin, and a pin about z in both: of one of them, of its own, or not drawn."""
-    for arm_name, some in zip((parent, name), arms, strict=True):
-        d.part(arm_name, *some, material="steel")
-    pin = d.cylinder(r, (0, 0, low), (0, 0, high))
-    kind = d.pick("merged", "apart", "none")
-    if kind != "none":
-        d.bore(name, d.cylinder(r + 1.5 * d.gap(2 * r) + 1e-5, (0, 0, low - 1), (0, 0, high + 1)))
-        if kind == "merged":
-            d.part(parent, pin)
-        else:
-            d.fix(d.part("pin", pin, material="steel"), parent)
-    d.hinge(name, parent, Z, (0, 0, 0), upper, lower, ajar=False)
 
 
 def _across(out: FloatArray, size: tuple[float, float]) -> tuple[FloatArray, FloatArray]:

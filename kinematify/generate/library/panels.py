@@ -61,10 +61,10 @@ def carcass(
     """
     (x0, y0, z0), (x1, y1, z1) = lower, upper
     if not d.style.hollow:
-        d.part(name, box(lower, upper), material=material)
+        d.part(name, box(lower, upper), look=material)
         return
     for a, b in ((x0, x0 + wall), (x1 - wall, x1)):
-        d.part(name, box((a, y0, z0), (b, y1, z1)), material=material)
+        d.part(name, box((a, y0, z0), (b, y1, z1)), look=material)
     for a, b in ((z0, z0 + wall), (z1 - wall, z1)):
         d.part(name, box((x0, y0, a), (x1, y1, b)))
     d.part(name, box((x0, y1 - 0.5 * wall, z0), (x1, y1, z1)))
@@ -115,7 +115,7 @@ def grip(
         if kind == "plate":
             shapes.append(beam(thick, 0.25 * thick, edge - half, edge + half, out))
     if d.style.grips == "apart":
-        d.fix(d.part(f"{on}_grip", *shapes, material="metal"), on)
+        d.fix(d.part(f"{on}_grip", *shapes, look="metal"), on)
     else:
         d.part(on, *d.workshop.painted(*shapes))
 
@@ -164,7 +164,7 @@ def leaf(
     low, high = low + shrunk + before, high - shrunk + before
     kind = "pane" if glazed and d.maybe(glazed) else d.pick("plain", "plain", "panel") if glazed else "plain"
     d.front(name, parent, material=material)
-    _filled(d, name, low, high, out, kind)
+    filled(d, name, low, high, out, kind)
     inward = 0.0 if d.style.has_bore or barrels else d.pick(0.0, 0.0, 0.0, d.draw(0.01, 0.05) * wide)
     middle, half = 0.5 * (low + high), 0.5 * float((high - low) @ across) - inward
     if barrels:
@@ -243,15 +243,8 @@ def _knuckles(
     return pivot
 
 
-def pane(d: ObjectBuilder, name: str, lower: Point, upper: Point) -> None:
-    """A plate of wood between two corners that is a plain slab, has a panel let in, or is a frame about a pane."""
-    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
-    d.part(name, material="wood")
-    _filled(d, name, low, high, -Y, d.pick("plain", "panel", "pane", "pane"))
-
-
-def _filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out: FloatArray, kind: str) -> None:
-    """Shapes of a plate: the same on both sides but for a panel."""
+def filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out: FloatArray, kind: str) -> None:
+    """Fill a plate between two corners: a ``plain`` slab, one with a ``panel``, or a frame about a ``pane``."""
     flat = 1.0 - np.abs(out)
     thick = float((high - low) @ np.abs(out))
     edge = d.draw(0.08, 0.2) * float((high - low)[flat > 0.5].min()) * flat
@@ -276,7 +269,7 @@ def _filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out:
     half = 0.5 * (high - low) * flat - 0.9 * edge
     glass = box(middle - half - filling, middle + half + filling)
     if d.style.grips == "apart" and d.maybe():
-        d.fix(d.part(f"{name}_pane", glass, material="glass"), name)
+        d.fix(d.part(f"{name}_pane", glass, look="glass"), name)
     else:
         d.part(name, *d.painted(glass, material="glass"))
 
@@ -349,16 +342,16 @@ def rack(d: ObjectBuilder, name: str, parent: str, lower: Point, upper: Point, *
     a, b = low + play * X, high - play * X
     kind = d.pick("tray", "sheet", "wires", "basket")
     if kind == "sheet":
-        d.part(name, box(a, [b[0], b[1], a[2] + 0.5 * wall]), material="metal")
+        d.part(name, box(a, [b[0], b[1], a[2] + 0.5 * wall]), look="metal")
     elif kind == "tray":
-        d.part(name, box(a, b), material="metal")
+        d.part(name, box(a, b), look="metal")
         d.cut(name, box(a + wall * (X + Y) + 0.4 * wall * Z, b - wall * (X + Y) + size[2] * Z))
     else:
         wire = 0.25 * wall
         levels = [a[2] + wire] if kind == "wires" else [a[2] + wire, b[2] - wire]
         for z in levels:
             for y in (a[1] + wire, b[1] - wire):
-                d.part(name, d.cylinder(wire, (a[0], y, z), (b[0], y, z)), material="metal")
+                d.part(name, d.cylinder(wire, (a[0], y, z), (b[0], y, z)), look="metal")
             for x in (a[0] + wire, b[0] - wire):
                 d.part(name, d.cylinder(wire, (x, a[1], z), (x, b[1], z)))
         for x in np.linspace(a[0] + wire, b[0] - wire, d.count(5, 12)):

@@ -25,6 +25,12 @@ SEGMENTS = 48
 Point: TypeAlias = "Sequence[float] | FloatArray"
 """x, y, z [m]."""
 
+Level: TypeAlias = "Point | float"
+"""A point, or a height above the origin [m]."""
+
+Span: TypeAlias = "tuple[float, float] | float"
+"""Two bounds, or the upper one of what lies evenly about zero [m]."""
+
 Solids: TypeAlias = "Manifold | Sequence[Solids]"
 """A solid, or some in lists."""
 
@@ -52,6 +58,12 @@ def box(lower: Point, upper: Point) -> Manifold:
     return Manifold.cube(np.maximum(lower, upper) - low).translate(low)
 
 
+def slab(x: Span, y: Span, z: Span) -> Manifold:
+    """Return the box between bounds along each axis; one number bounds both sides of zero."""
+    lower, upper = np.transpose([np.multiply((-1.0, 1.0), span) if np.ndim(span) == 0 else span for span in (x, y, z)])
+    return box(lower, upper)
+
+
 def block(middle: Point, size: Point) -> Manifold:
     """Return the box of a size about a point."""
     half = 0.5 * np.asarray(size)
@@ -72,18 +84,19 @@ def beam(wide: float, high: float, start: Point, end: Point, side: Point = Z) ->
     return Manifold.cube((length, wide, high), True).transform(frame)
 
 
-def cylinder(radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
+def cylinder(radius: float, start: Level, end: Level, *, segments: int = SEGMENTS) -> Manifold:
     """Return the cylinder whose circular faces are centred at `start` and `end`."""
     return cone(radius, radius, start, end, segments=segments)
 
 
-def cone(radius: float, top_radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
+def cone(radius: float, top_radius: float, start: Level, end: Level, *, segments: int = SEGMENTS) -> Manifold:
     """Return the cone, or what is left of one without its tip, between two points."""
+    start, end = _point(start), _point(end)
     length = float(np.linalg.norm(np.subtract(end, start, dtype=np.float64)))
     return Manifold.cylinder(length, radius, top_radius, segments).transform(_upright(start, np.subtract(end, start)))
 
 
-def tube(radius: float, inner_radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
+def tube(radius: float, inner_radius: float, start: Level, end: Level, *, segments: int = SEGMENTS) -> Manifold:
     """Return the cylinder with a bore between two points."""
     beyond = 0.5 * np.subtract(end, start)
     inner = cylinder(inner_radius, np.subtract(start, beyond), np.add(end, beyond), segments=segments)
@@ -93,6 +106,11 @@ def tube(radius: float, inner_radius: float, start: Point, end: Point, *, segmen
 def torus(radius: float, wire_radius: float, middle: Point, normal: Point, *, segments: int = SEGMENTS) -> Manifold:
     """Return a ring of round wire."""
     return ring(radius, wire_radius, segments=segments).transform(_upright(middle, normal))
+
+
+def _point(level: Level) -> Point:
+    """A point, of a height that above the origin."""
+    return (0.0, 0.0, level) if isinstance(level, float | int) else level
 
 
 def _upright(origin: Point, towards: Point) -> FloatArray:
@@ -150,8 +168,9 @@ def scaled(size: float) -> Callable[[float, float, float], FloatArray]:
     return point
 
 
-def rod(radius: float, start: Point, end: Point, *, segments: int = 32) -> Manifold:
+def rod(radius: float, start: Level, end: Level, *, segments: int = 32) -> Manifold:
     """Return a cylinder with round ends."""
+    start, end = _point(start), _point(end)
     ends = ball(radius, start, segments=segments) + ball(radius, end, segments=segments)
     return cylinder(radius, start, end, segments=segments) + ends
 
