@@ -12,7 +12,7 @@ from kinematify.creation.blueprint_feedback import in_blueprint_words
 from kinematify.creation.generated_model import GeneratedModel, job_folder
 from kinematify.errors import InputError
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.providers.command import CommandSource
+from kinematify.generate.providers.command import run_command
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import language_model
@@ -73,10 +73,10 @@ def made_parts(
     """
     if order.program is None:
         raise InputError("--source command needs --command 'program {image} {out}'.")
-    source = CommandSource(order.program, order.time_limit or order.config.sources.command_seconds)
+    limit = order.time_limit or order.config.sources.command_seconds
     prompt = check_prompt(order.text, order.images, seed=order.seed)
-    with open_job(job_folder(order.out), source.name, prompt.digest(source.options())) as job:
-        parts = source.generate(prompt, job, lambda stage, done: progress(stage, _MADE * done))
+    with open_job(job_folder(order.out), "command", prompt.digest({"command": order.program})) as job:
+        parts = run_command(order.program, limit, prompt, job, lambda stage, done: progress(stage, _MADE * done))
     progress("reading the parts", _MADE)
     read = load_assembly(parts.path, config=order.config.assembly, up=up, scale=scale, labels=parts.labels)
     found = infer(

@@ -10,7 +10,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import case, legs, lever
 from kinematify.generate.library.panels import carcass, drawer, leaf, seam
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled, slab
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -346,22 +346,22 @@ def desk_with_pedestal(b: ObjectBuilder, width: float, depth: float, height: flo
     size=length(0.9, 1.1),
 )
 def glider_chair(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "stand",
-        box(p(-0.4, -0.4, 0), p(0.4, 0.4, 0.04)),
-        [box(p(s * 0.36 - 0.02, -0.03, 0.03), p(s * 0.36 + 0.02, 0.03, 0.62)) for s in (-1, 1)],
+        p.slab(0.4, 0.4, (0, 0.04)),
+        [p.slab((s * 0.36 - 0.02, s * 0.36 + 0.02), 0.03, (0.03, 0.62)) for s in (-1, 1)],
         look="wood",
     )
-    b.bore("stand", b.cylinder(0.0115 * size, p(-1, 0, 0.58), p(1, 0, 0.58)))
+    b.bore("stand", p.cylinder(0.0115, (-1, 0, 0.58), (1, 0, 0.58)))
     b.part(
         "seat",
-        box(p(-0.28, -0.28, 0.36), p(0.28, 0.25, 0.4)),
-        beam(0.56 * size, 0.03 * size, p(0, 0.24, 0.38), p(0, 0.36, 1), X),
-        [box(p(s * 0.3, -0.25, 0.55), p(s * 0.25, 0.25, 0.61)) for s in (-1, 1)],
-        [box(p(s * 0.28, -0.22, 0.38), p(s * 0.25, -0.17, 0.56)) for s in (-1, 1)],
-        [box(p(s * 0.28, 0.17, 0.38), p(s * 0.25, 0.22, 0.56)) for s in (-1, 1)],
-        [b.cylinder(0.01 * size, p(s * 0.29, 0, 0.58), p(s * 0.39, 0, 0.58)) for s in (-1, 1)],
+        p.slab(0.28, (-0.28, 0.25), (0.36, 0.4)),
+        p.beam(0.56, 0.03, (0, 0.24, 0.38), (0, 0.36, 1), X),
+        [p.slab((s * 0.3, s * 0.25), 0.25, (0.55, 0.61)) for s in (-1, 1)],
+        [p.box((s * 0.28, -0.22, 0.38), (s * 0.25, -0.17, 0.56)) for s in (-1, 1)],
+        [p.box((s * 0.28, 0.17, 0.38), (s * 0.25, 0.22, 0.56)) for s in (-1, 1)],
+        [p.cylinder(0.01, (s * 0.29, 0, 0.58), (s * 0.39, 0, 0.58)) for s in (-1, 1)],
         look="brown wood",
     )
     b.hinge("seat", parent="stand", axis=X, pivot=p(0, 0, 0.58), upper=0.3, lower=-0.3)

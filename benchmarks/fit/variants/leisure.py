@@ -11,7 +11,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import bail, button, case, caster, crank, knob, legs, lever, plunger, wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, scaled, slab, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -20,22 +20,14 @@ if TYPE_CHECKING:
 @kind("parametric gyroscope", like="gyroscope", radius=length(0.03, 0.3))
 def parametric_gyroscope(b: ObjectBuilder, radius: float) -> None:
     """A wheel in a ring in a ring."""
+    p = b.sized(radius)
     g = b.gap(0.05 * radius) + 0.0002
     c = vector(0, 0, 1.7 * radius)
     b.part(
         "stand",
-        b.cylinder(0.8 * radius, 0, 0.1 * radius),
-        [
-            beam(
-                0.1 * radius,
-                0.1 * radius,
-                (s * 1.5 * radius, 0, 0.05 * radius),
-                (s * 1.5 * radius, 0, 1.75 * radius),
-                Y,
-            )
-            for s in (-1, 1)
-        ],
-        beam(0.1 * radius, 0.1 * radius, (-1.5 * radius, 0, 0.05 * radius), (1.5 * radius, 0, 0.05 * radius)),
+        p.cylinder(0.8, 0, 0.1),
+        [p.beam(0.1, 0.1, (s * 1.5, 0, 0.05), (s * 1.5, 0, 1.75), Y) for s in (-1, 1)],
+        p.beam(0.1, 0.1, (-1.5, 0, 0.05), (1.5, 0, 0.05)),
         look="metal",
     )
     b.part(
@@ -115,14 +107,10 @@ def parametric_hi_hat(b: ObjectBuilder, height: float, radius: float) -> None:
 @kind("parametric metronome", like="metronome", height=length(0.15, 0.25))
 def parametric_metronome(b: ObjectBuilder, height: float) -> None:
     """A rod that swings on a tapered case, and a weight on it."""
+    p = b.sized(height)
     b.part(
         "case",
-        prism(
-            [(-0.35 * height, 0), (0.35 * height, 0), (0.12 * height, height), (-0.12 * height, height)],
-            (0, 0, 0),
-            0.4 * height,
-            "y",
-        ),
+        p.prism([(-0.35, 0), (0.35, 0), (0.12, 1), (-0.12, 1)], (0, 0, 0), 0.4, "y"),
         look="wood",
     )
     g = b.gap(0.01) + 0.0003
@@ -864,18 +852,18 @@ def lighthouse_lamp(b: ObjectBuilder, size: float) -> None:
 
 @kind("movie camera", like="camera", size=length(0.9, 1.2))
 def movie_camera(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.05, -0.1, 0), p(0.05, 0.1, 0.16)),
-        box(p(-0.02, -0.02, -0.1), p(0.02, 0.03, 0.01)),
+        p.slab(0.05, 0.1, (0, 0.16)),
+        p.slab(0.02, (-0.02, 0.03), (-0.1, 0.01)),
         look="black metal",
     )
-    b.cut("body", box(p(0, -0.08, 0.02), p(0.1, 0.08, 0.14)))
+    b.cut("body", p.slab((0, 0.1), 0.08, (0.02, 0.14)))
     b.part(
         "lens",
-        b.cylinder(0.03 * size, p(0, -0.101, 0.11), p(0, -0.16, 0.11)),
-        b.cylinder(0.034 * size, p(0, -0.13, 0.11), p(0, -0.15, 0.11)),
+        p.cylinder(0.03, (0, -0.101, 0.11), (0, -0.16, 0.11)),
+        p.cylinder(0.034, (0, -0.13, 0.11), (0, -0.15, 0.11)),
         look="grey metal",
     )
     b.spin("lens", parent="body", axis=-Y, pivot=p(0, -0.1, 0.11))

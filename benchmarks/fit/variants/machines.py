@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.generate.library.kind import kind, length
 from kinematify.generate.library.mechanisms import arm, bail, case, knob, plunger, rotor
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, scaled, slab, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -351,13 +351,13 @@ def cable_reel(b: ObjectBuilder, radius: float) -> None:
 @kind("parametric microscope", like="microscope", size=length(0.8, 1.2))
 def parametric_microscope(b: ObjectBuilder, size: float) -> None:
     """A stage that slides, a turret, focus knobs, a tilting tube."""
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "stand",
-        box(p(-0.08, -0.1, 0), p(0.08, 0.1, 0.03)),
-        box(p(-0.03, 0.05, 0.02), p(0.03, 0.09, 0.3)),
-        box(p(-0.03, -0.04, 0.27), p(0.03, 0.09, 0.31)),
-        b.cylinder(0.02 * size, p(0, -0.02, 0.3), p(0, -0.09, 0.4)),
+        p.slab(0.08, 0.1, (0, 0.03)),
+        p.slab(0.03, (0.05, 0.09), (0.02, 0.3)),
+        p.slab(0.03, (-0.04, 0.09), (0.27, 0.31)),
+        p.cylinder(0.02, (0, -0.02, 0.3), (0, -0.09, 0.4)),
         look="metal",
     )
     g = b.gap(0.01) + 0.0003
@@ -560,26 +560,27 @@ def parametric_door_bolt(b: ObjectBuilder, length: float) -> None:
 @kind("steering rack", like="rack_and_pinion", length=length(0.5, 1.0))
 def steering_rack(b: ObjectBuilder, length: float) -> None:
     L = length
+    p = b.sized(L)
     b.part(
         "housing",
-        b.cylinder(0.04 * L, (-0.3 * L, 0, 0), (0.3 * L, 0, 0)),
-        b.cylinder(0.035 * L, (0, -0.03 * L, 0.03 * L), (0, -0.03 * L, 0.12 * L)),
+        p.cylinder(0.04, (-0.3, 0, 0), (0.3, 0, 0)),
+        p.cylinder(0.035, (0, -0.03, 0.03), (0, -0.03, 0.12)),
         [slab((s * 0.25 * L - 0.02 * L, s * 0.25 * L + 0.02 * L), 0.06 * L, (-0.06 * L, -0.03 * L)) for s in (-1, 1)],
         look="metal",
     )
-    b.bore("housing", b.cylinder(0.0215 * L, (-L, 0, 0), (L, 0, 0)))
-    b.bore("housing", b.cylinder(0.0135 * L, (0, -0.03 * L, 0.045 * L), (0, -0.03 * L, L)))
+    b.bore("housing", p.cylinder(0.0215, (-1, 0, 0), (1, 0, 0)))
+    b.bore("housing", p.cylinder(0.0135, (0, -0.03, 0.045), (0, -0.03, 1)))
     b.part(
         "rack",
-        b.cylinder(0.02 * L, (-0.42 * L, 0, 0), (0.42 * L, 0, 0)),
-        [ball(0.03 * L, (s * 0.43 * L, 0, 0)) for s in (-1, 1)],
+        p.cylinder(0.02, (-0.42, 0, 0), (0.42, 0, 0)),
+        [p.ball(0.03, (s * 0.43, 0, 0)) for s in (-1, 1)],
         look="steel",
     )
     b.slide("rack", parent="housing", axis=X, lower=-0.08 * L, upper=0.08 * L)
     b.part(
         "pinion",
-        b.cylinder(0.012 * L, (0, -0.03 * L, 0.055 * L), (0, -0.03 * L, 0.3 * L)),
-        b.cylinder(0.03 * L, (0, -0.03 * L, 0.28 * L), (0, -0.03 * L, 0.3 * L)),
+        p.cylinder(0.012, (0, -0.03, 0.055), (0, -0.03, 0.3)),
+        p.cylinder(0.03, (0, -0.03, 0.28), (0, -0.03, 0.3)),
         look="steel",
     )
     b.hinge("pinion", parent="housing", axis=Z, pivot=[0, -0.03 * L, 0], lower=-6.28, upper=6.28)

@@ -11,7 +11,7 @@ from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import arm, axles, caster, rotor, wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, scaled, slab, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -297,24 +297,20 @@ def parametric_wheelchair(b: ObjectBuilder, width: float, radius: float) -> None
 @kind("parametric helicopter", like="helicopter", size=length(0.1, 1.0))
 def parametric_helicopter(b: ObjectBuilder, size: float) -> None:
     """A main rotor, a tail rotor, a door on each side."""
+    p = b.sized(size)
     b.part(
         "hull",
-        b.rod(0.6 * size, (-0.5 * size, 0, 1.2 * size), (0.6 * size, 0, 1.2 * size)),
-        b.cone(0.3 * size, 0.1 * size, (-0.8 * size, 0, 1.4 * size), (-3.2 * size, 0, 1.6 * size)),
-        b.cylinder(0.12 * size, 1.7 * size, 2 * size),
-        slab((-3.3 * size, -3 * size), 0.03 * size, (1.5 * size, 2.2 * size)),
+        p.rod(0.6, (-0.5, 0, 1.2), (0.6, 0, 1.2)),
+        p.cone(0.3, 0.1, (-0.8, 0, 1.4), (-3.2, 0, 1.6)),
+        p.cylinder(0.12, 1.7, 2),
+        p.slab((-3.3, -3), 0.03, (1.5, 2.2)),
         look="metal",
     )
     for s in (-1, 1):
         b.part(
             "hull",
-            b.cylinder(
-                0.04 * size, (-0.8 * size, s * 0.5 * size, 0.3 * size), (0.9 * size, s * 0.5 * size, 0.3 * size)
-            ),
-            [
-                b.cylinder(0.03 * size, (x * size, s * 0.5 * size, 0.3 * size), (x * size, s * 0.3 * size, 0.8 * size))
-                for x in (-0.4, 0.5)
-            ],
+            p.cylinder(0.04, (-0.8, s * 0.5, 0.3), (0.9, s * 0.5, 0.3)),
+            [p.cylinder(0.03, (x, s * 0.5, 0.3), (x, s * 0.3, 0.8)) for x in (-0.4, 0.5)],
         )
     rotor(
         b,
@@ -326,7 +322,7 @@ def parametric_helicopter(b: ObjectBuilder, size: float) -> None:
         blades=b.count(2, 5),
         wide=0.07,
     )
-    b.part("hull", b.cylinder(0.06 * size, (-3.15 * size, 0, 1.8 * size), (-3.15 * size, 0.2 * size, 1.8 * size)))
+    b.part("hull", p.cylinder(0.06, (-3.15, 0, 1.8), (-3.15, 0.2, 1.8)))
     rotor(
         b,
         "tail_rotor",
@@ -342,7 +338,7 @@ def parametric_helicopter(b: ObjectBuilder, size: float) -> None:
 def light_aircraft(d: ObjectBuilder, length: float, b: float) -> None:
     """A propeller, ailerons, an elevator, a rudder, wheels."""
     k = d.pick(1, 0.1)
-    p = scaled(k)
+    p = d.sized(k)
     d.part(
         "airframe",
         d.cone(0.6 * k, 0.15 * k, p(0.25 * length, 0, 1.2), p(-0.7 * length, 0, 1.4)),
@@ -440,25 +436,15 @@ def parametric_drone(b: ObjectBuilder, radius: float) -> None:
 @kind("parametric sailing boat", like="sailboat", length=length(2.0, 6.0))
 def sailing_boat(b: ObjectBuilder, length: float) -> None:
     """A hull, a boom that swings at the mast, a rudder with a tiller."""
+    p = b.sized(length)
     b.part(
         "hull",
-        prism(
-            [
-                (-0.5 * length, -0.16 * length),
-                (0.25 * length, -0.17 * length),
-                (0.5 * length, 0),
-                (0.25 * length, 0.17 * length),
-                (-0.5 * length, 0.16 * length),
-            ],
-            (0, 0, 0.08 * length),
-            0.16 * length,
-            "z",
-        ),
-        b.cylinder(0.012 * length, (0.1 * length, 0, 0.1 * length), (0.1 * length, 0, 1.2 * length)),
+        p.prism([(-0.5, -0.16), (0.25, -0.17), (0.5, 0), (0.25, 0.17), (-0.5, 0.16)], (0, 0, 0.08), 0.16, "z"),
+        p.cylinder(0.012, (0.1, 0, 0.1), (0.1, 0, 1.2)),
         look="wood",
     )
     if b.style.hollow:
-        b.cut("hull", slab((-0.45 * length, 0.05 * length), 0.13 * length, (0.1 * length, 0.3 * length)))
+        b.cut("hull", p.slab((-0.45, 0.05), 0.13, (0.1, 0.3)))
     g = b.gap(0.02 * length) + 0.0005
     z = 0.28 * length
     b.part(
@@ -495,37 +481,16 @@ def sailing_boat(b: ObjectBuilder, length: float) -> None:
 @kind("parametric rowing boat", like="rowing_boat", length=length(2.0, 4.0))
 def parametric_rowing_boat(b: ObjectBuilder, length: float) -> None:
     """Two oars in their locks."""
+    p = b.sized(length)
     b.part(
         "hull",
-        prism(
-            [
-                (-0.5 * length, -0.12 * length),
-                (0.2 * length, -0.18 * length),
-                (0.5 * length, 0),
-                (0.2 * length, 0.18 * length),
-                (-0.5 * length, 0.12 * length),
-            ],
-            (0, 0, 0.1 * length),
-            0.2 * length,
-            "z",
-        ),
+        p.prism([(-0.5, -0.12), (0.2, -0.18), (0.5, 0), (0.2, 0.18), (-0.5, 0.12)], (0, 0, 0.1), 0.2, "z"),
         look="wood",
     )
     if b.style.hollow:
         b.cut(
             "hull",
-            prism(
-                [
-                    (-0.46 * length, -0.1 * length),
-                    (0.18 * length, -0.15 * length),
-                    (0.4 * length, 0),
-                    (0.18 * length, 0.15 * length),
-                    (-0.46 * length, 0.1 * length),
-                ],
-                (0, 0, 0.15 * length),
-                0.2 * length,
-                "z",
-            ),
+            p.prism([(-0.46, -0.1), (0.18, -0.15), (0.4, 0), (0.18, 0.15), (-0.46, 0.1)], (0, 0, 0.15), 0.2, "z"),
         )
     g = b.gap(0.02 * length) + 0.0005
     for k, s in enumerate((-1, 1)):
@@ -597,26 +562,26 @@ def parametric_forklift(b: ObjectBuilder, radius: float) -> None:
 @kind("parametric digger", like="excavator", size=length(0.1, 1.0))
 def digger(b: ObjectBuilder, size: float) -> None:
     """A turntable on tracks, boom, stick and bucket."""
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "tracks",
-        [b.rod(0.35 * size, p(-1.2, s * 1, 0.35), p(1.2, s * 1, 0.35)) for s in (-1, 1)],
-        box(p(-0.9, -1, 0.2), p(0.9, 1, 0.6)),
-        b.cylinder(0.7 * size, p(0, 0, 0.5), p(0, 0, 0.8)),
+        [p.rod(0.35, (-1.2, s * 1, 0.35), (1.2, s * 1, 0.35)) for s in (-1, 1)],
+        p.slab(0.9, 1, (0.2, 0.6)),
+        p.cylinder(0.7, 0.5, 0.8),
         look="steel",
     )
     g = b.gap(0.1 * size)
     b.part(
         "house",
         box(p(-1.3, -0.9, 0.8) + g * Z, p(1, 0.9, 1.3)),
-        box(p(-0.2, 0.1, 1.2), p(0.95, 0.85, 2.3)),
+        p.box((-0.2, 0.1, 1.2), (0.95, 0.85, 2.3)),
         look="steel",
     )
     b.spin("house", parent="tracks", axis=Z, pivot=(0, 0, 0.8 * size))
     a = p(1.25, -0.3, 1.1)
     b_ = p(3, -0.3, 3)
     c = p(4.6, -0.3, 1.8)
-    b.part("house", box(p(0.9, -0.42, 0.95), p(1.4, -0.18, 1.25)))
+    b.part("house", p.box((0.9, -0.42, 0.95), (1.4, -0.18, 1.25)))
     arm(b, "boom", parent="house", start=a, end=b_, thick=0.26 * size, axis=Y, lower=-0.3, upper=0.4)
     arm(
         b,

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import cos, pi, radians, sin
-from typing import TYPE_CHECKING
+
+from manifold3d import Manifold
 
 from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import button, lever
 from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
-from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, off, rod, slab, union
-
-if TYPE_CHECKING:
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.procedural.solids import Point, X, Y, Z, bore, box, cylinder, hull, off, rod, slab, union
+from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
@@ -29,18 +25,12 @@ if TYPE_CHECKING:
 )
 def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, open: float, clearance: float) -> None:
     """Toilets: a seat and a lid on one pin line, and a flush lever or button on the tank."""
-    # knuckle: radius [m]
-    # the_tank: from the pins to the tank [m]
-    # seat: thickness [m]
-    # lid: thickness [m]
-    # pin: radius [m]
-    # opens: [rad]
-    knuckle = 0.009
-    the_tank = 0.11
-    seat = 0.018
-    lid = 0.014
-    pin = 0.0045
-    opens = 1.65
+    knuckle = 0.009  # radius [m]
+    the_tank = 0.11  # from the pins to the tank [m]
+    seat = 0.018  # thickness [m]
+    lid = 0.014  # thickness [m]
+    pin = 0.0045  # radius [m]
+    opens = 1.65  # [rad]
 
     # Of the bowl: narrower than the tank and not as wide as it is long.
     def breadth(back: float) -> float:
@@ -86,7 +76,7 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
     its_width = breadth(y)
     back = y - knuckle - tight - 0.001
     level = height + tight
-    its_ring = oval(its_width, 0.0, back, (level, level + seat)) - oval(
+    ring = oval(its_width, 0.0, back, (level, level + seat)) - oval(
         0.62 * its_width, 0.19 * its_width, 0.8 * back, (level - 1.0, level + 1.0)
     )
     cover = oval(its_width, 0.0, back, (level + seat + tight, level + seat + tight + lid))
@@ -111,7 +101,7 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
     w.add("body", posts)
     w.cut("body", holes)
     pivot = (0.0, y, z)
-    w.body("seat", its_ring, knuckles, pins, material="plastic")
+    w.body("seat", ring, knuckles, pins, material="plastic")
     w.body("lid", union(cover, *of_lid) - union(*holes), material="plastic")
     w.turns("seat", "body", (-1, 0, 0), pivot, (0.0, opens - 0.95 * open * opens))
     w.turns("lid", "seat", (-1, 0, 0), pivot, (0.0, opens), rest=open)
@@ -158,8 +148,7 @@ def faucet(
     clearance: float,
 ) -> None:
     """Faucets: a lever that turns and lifts, handles that twist, or a spout that swivels."""
-    # the_plate: thickness of the base plate [m]
-    the_plate = 0.01
+    the_plate = 0.01  # thickness of the base plate [m]
 
     # A pipe that rises, bends forward over a half circle and ends above its outlet.
     def spout(radius: float, foot: Point, rise: float, reach: float) -> Manifold:

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import copysign, cos, degrees, hypot, pi, radians, sin, tan
 from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
 from kinematify.generate.library.kind import angle, choice, kind, length, whole
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, at, barrel, fork, stub
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, ring, rod, slab, union, vector
+from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
 
 
@@ -39,10 +37,8 @@ def laptop(
     w: Workshop, width: float, depth: float, base: float, screen: float, knuckles: int, open: float, clearance: float
 ) -> None:
     """Laptops: a screen that is hinged at the back edge of a slab with keys."""
-    # radius: of the hinges [m]
-    # opens: [rad]
-    radius = 0.005
-    opens = 2.2
+    radius = 0.005  # of the hinges [m]
+    opens = 2.2  # [rad]
     back = depth - 2.0 * radius - clearance - 0.001
     level = base + clearance
     sheet = slab(0.5 * width, (0, back), (0, base))
@@ -80,21 +76,15 @@ def laptop(
 )
 def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, foot: str, clearance: float) -> None:
     """Globes: a ball that turns on an inclined axis in a meridian, which may turn on its foot."""
-    # the_foot: thickness of the foot [m]
-    # latitudes: of the raised lines [deg]
-    the_foot = 0.014
-    latitudes = (-40.0, 0.0, 40.0)
+    the_foot = 0.014  # thickness of the foot [m]
+    latitudes = (-40.0, 0.0, 40.0)  # of the raised lines [deg]
 
     # A foot and a post up to the meridian; returns the body that the post belongs to.
     def stand(low: float, arc: float) -> str:
         radius = 0.5 * diameter
         wide = 3.0 * arc
         start = 1.5 * the_foot
-        w.body(
-            "base",
-            cylinder(0.62 * radius, 0, the_foot, segments=64),
-            cylinder(0.5 * radius, 0, start, segments=64),
-        )
+        w.body("base", cylinder(0.62 * radius, 0, the_foot, segments=64), cylinder(0.5 * radius, 0, start, segments=64))
         if foot == "fixed":
             w.add("base", cylinder(0.5 * wide, the_foot, low))
             found = "base"
@@ -152,16 +142,11 @@ def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, fo
 )
 def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, open: float, clearance: float) -> None:
     """Umbrellas that stand on their handle: slats that spread from a crown, and a runner on the shaft."""
-    # knuckle: radius of a slat's hinge [m]
-    # hinge: length of a slat's hinge [m]
-    # the_shaft: radius [m]
-    # grip: height of the handle [m]
-    # opens: [rad]
-    knuckle = 0.003
-    hinge = 0.009
-    the_shaft = 0.005
-    grip = 0.13
-    opens = 1.3
+    knuckle = 0.003  # radius of a slat's hinge [m]
+    hinge = 0.009  # length of a slat's hinge [m]
+    the_shaft = 0.005  # radius [m]
+    grip = 0.13  # height of the handle [m]
+    opens = 1.3  # [rad]
 
     # A straight grip, or a crook whose lowest place is the ground.
     def handle_of() -> Sequence[Manifold]:
@@ -244,22 +229,14 @@ def eyeglasses(
 
     The pins lean a little, so that one folded temple rises inwards and the other sinks: they lie one above the other.
     """
-    # knuckle: radius and length of a hinge [m]
-    # rim: width of a rim [m]
-    # deep: thickness of the frame [m]
-    # thick: of a temple [m]
-    # lean: of the pins [rad]
-    # hinge: radius and length of a hinge [m]
-    # the_back: from the front of the frame to the pins [m]
-    # the_high: of a temple [m]
-    knuckle = 0.0018
-    rim = 0.0025
-    deep = 0.003
-    thick = 0.0032
-    lean = 0.1
-    hinge = 0.006
-    the_back = 0.011
-    the_high = 0.0038
+    knuckle = 0.0018  # radius and length of a hinge [m]
+    rim = 0.0025  # width of a rim [m]
+    deep = 0.003  # thickness of the frame [m]
+    thick = 0.0032  # of a temple [m]
+    lean = 0.1  # of the pins [rad]
+    hinge = 0.006  # radius and length of a hinge [m]
+    the_back = 0.011  # from the front of the frame to the pins [m]
+    the_high = 0.0038  # of a temple [m]
 
     # A rounded plate of the shape of a lens, smaller by `inset`.
     def outline(x: float, wide: float, inset: float, start: float | None = None, end: float = deep) -> Manifold:

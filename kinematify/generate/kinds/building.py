@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import degrees, hypot, pi, tan
-from typing import TYPE_CHECKING
+from typing import Any
+
+from manifold3d import Manifold
 
 from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
@@ -14,15 +17,7 @@ from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.pieces.fronts import Field
 from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, rod, slab, union
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Any
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.workshop import Workshop
-
+from kinematify.generate.procedural.workshop import Workshop
 
 _STOP = 0.012  # how far the strip that a leaf lies against reaches into the opening [m]
 _GROOVE = 0.012  # depth of the grooves that leaves run in [m]
@@ -218,16 +213,11 @@ def door(
     clearance: float,
 ) -> None:
     """Doors in their frames: hinged leaves, alone or in pairs, leaves that slide in grooves, and leaves that fold."""
-    # the_depth: of a frame without grooves [m]
-    # the_barrel: radius [m]
-    # the_opens: [rad]; less where the leaves of two openings would meet
-    # floor: under a leaf that has no sill [m]
-    # folds: of the first leaf of a folding door; the others fold back by twice as much [rad]
-    the_depth = 0.11
-    the_barrel = 0.007
-    the_opens = 1.75
-    floor = 0.006
-    folds = 1.25
+    the_depth = 0.11  # of a frame without grooves [m]
+    the_barrel = 0.007  # radius [m]
+    the_opens = 1.75  # [rad]; less where the leaves of two openings would meet
+    floor = 0.006  # under a leaf that has no sill [m]
+    folds = 1.25  # of the first leaf of a folding door; the others fold back by twice as much [rad]
 
     def opening_of(sill: float) -> Field:
         half = 0.5 * width
@@ -255,9 +245,9 @@ def door(
     if kind == "hinged":
         opening = opening_of(0.0)
         groups = side_by_side(opening, leaves, frame, together=2)
-        its_cut = stopped_opening(groups, the_depth, thick, clearance)
+        cut = stopped_opening(groups, the_depth, thick, clearance)
         below = [Field(left=g[0].left, right=g[-1].right, bottom=-1.0, top=0.1).box(-1.0, 1.0) for g in groups]
-        w.body("frame", frame_of(the_depth) - its_cut)
+        w.body("frame", frame_of(the_depth) - cut)
         w.cut("frame", below)
         opens = the_opens if len(groups) == 1 else 1.5
         its_leaves = [(place, field) for group in groups for place, field in enumerate(group)]
@@ -364,8 +354,8 @@ def door(
             its_height = field_2.top - field_2.bottom
             for share in (0.15, 0.5, 0.85):
                 place_2 = (field_2.left, level, field_2.bottom + share * its_height)
-                for its_body, half in zip((parent, name_2), halves, strict=False):
-                    w.add(its_body, (half if level < 0 else half.mirror((0, 1, 0))).translate(place_2))
+                for body, half in zip((parent, name_2), halves, strict=False):
+                    w.add(body, (half if level < 0 else half.mirror((0, 1, 0))).translate(place_2))
             opens_2 = folds if k == 0 else 2.0 * folds
             w.turns(name_2, parent, (0, 0, -1 if inwards else 1), (field_2.left, level, 0), (0.0, opens_2), rest=open)
             parent = name_2
@@ -412,16 +402,11 @@ def window(
     clearance: float,
 ) -> None:
     """Windows: sashes that slide in grooves, or turn about a side, the lower or upper edge, or pins at mid-height."""
-    # thick: of a sash [m]
-    # the_sash: width of a sash's bars [m]
-    # the_depth: of a frame without grooves [m]
-    # pin: radius of what a pivoting sash turns on [m]
-    # turning: How far a sash opens [rad].
-    thick = 0.04
-    the_sash = 0.045
-    the_depth = 0.07
-    pin = 0.008
-    turning = {"casement": 1.5, "tilt": 0.6, "awning": 0.8}
+    thick = 0.04  # of a sash [m]
+    sash = 0.045  # width of a sash's bars [m]
+    the_depth = 0.07  # of a frame without grooves [m]
+    pin = 0.008  # radius of what a pivoting sash turns on [m]
+    turning = {"casement": 1.5, "tilt": 0.6, "awning": 0.8}  # how far a sash opens [rad]
 
     def frame_of(depth: float) -> Manifold:
         half = 0.5 * width
@@ -429,7 +414,7 @@ def window(
 
     # Width of the bars around a sash's panes.
     def bar_of(face: Field) -> float:
-        return min(the_sash, 0.2 * (face.right - face.left), 0.2 * (face.top - face.bottom))
+        return min(sash, 0.2 * (face.right - face.left), 0.2 * (face.top - face.bottom))
 
     # A sash with its panes.
     def panes_of(face: Field, front: float) -> Manifold:
@@ -535,16 +520,11 @@ def switch_panel(
     w: Workshop, rockers: int, dimmers: int, kind: str, pitch: float, height: float, open: float, clearance: float
 ) -> None:
     """Light switches: rockers or toggles side by side in a plate, and dimmers."""
-    # switch_depth: of the housing [m]
-    # the_tilt: From the middle to either end [rad].
-    # pivot: depth of its pins [m]
-    # pocket: depth of the room behind a switch [m]
-    # pin: radius of the pins [m]
-    switch_depth = 0.034
-    the_tilt = {"rocker": 0.12, "toggle": 0.35}
-    pivot = 0.009
-    pocket = 0.024
-    pin = 0.003
+    switch_depth = 0.034  # of the housing [m]
+    the_tilt = {"rocker": 0.12, "toggle": 0.35}  # from the middle to either end [rad]
+    pivot = 0.009  # depth of its pins [m]
+    pocket = 0.024  # depth of the room behind a switch [m]
+    pin = 0.003  # radius of the pins [m]
 
     # A wedge with a ridge in its middle, level about its pins, and the room that it needs.
     def rocker(half: float, high: float, clearance: float) -> tuple[Manifold, Manifold]:
@@ -571,15 +551,15 @@ def switch_panel(
         half_2 = 0.5 * pitch - 0.008
         level = 0.5 * height
         if kind == "rocker":
-            solid, its_room = rocker(half_2, 0.36 * height, clearance)
+            solid, room = rocker(half_2, 0.36 * height, clearance)
         else:
             half_2 = min(half_2, 0.01)
-            solid, its_room = toggle(half_2, clearance)
+            solid, room = toggle(half_2, clearance)
         reach = half_2 + 0.0055
         tight = min(clearance, 0.5 * pin)
         pins = cylinder(pin, (-reach, 0, 0), (reach, 0, 0))
         place = ((k + 0.5) * pitch - half + 0.006, pivot, level)
-        w.cut("plate", its_room.translate(place))
+        w.cut("plate", room.translate(place))
         w.cut("plate", bore(pin, tight, (-reach - tight, 0, 0), (reach + tight, 0, 0)).translate(place))
         tilt = the_tilt[kind]
         name = f"rocker_{k + 1}"

@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import asin, cos, degrees, hypot, pi, sin
-from typing import TYPE_CHECKING
+
+from manifold3d import Manifold
 
 from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.library.mechanisms import caster, in_fork
 from kinematify.generate.library.panels import grip
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, barrel
-from kinematify.generate.procedural.solids import X, Z, bore, box, cylinder, hull, lathe, ring, rod, slab, tray, union
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.procedural.solids import (
+    Point,
+    X,
+    Z,
+    bore,
+    box,
+    cylinder,
+    hull,
+    lathe,
+    ring,
+    rod,
+    slab,
+    tray,
+    union,
+)
+from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
@@ -126,11 +135,11 @@ def box_(
         level_2 = height - 2.0 * wall
         thick = wall
         groove = 0.5 * wall
-        its_body = tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall)
+        body = tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall)
         half = 0.5 * width - wall + groove
         slot = slab(half, (-1.0, depth - wall + groove), (level_2, level_2 + thick))
         mouth = box((wall - 0.5 * width, -1.0, level_2), (0.5 * width - wall, wall + 0.001, height + 1.0))
-        w.body("body", its_body - slot - mouth)
+        w.body("body", body - slot - mouth)
         gap = min(clearance, 0.25 * wall)
         its_lid = box((gap - half, 0, level_2 + gap), (half - gap, depth - wall + groove - gap, level_2 + thick - gap))
         notch = slab(0.1 * width, (0.08 * depth, 0.08 * depth + 0.006), (level_2, level_2 + thick + 0.3 * wall))
@@ -155,7 +164,7 @@ def box_(
     usual={
         "flip cap bottle, flip top bottle, tube with a flip cap, toothpaste tube, sauce bottle, flip top tube": {
             "cap": "flip"
-        },
+        }
     },
     words=(
         "water bottle, wine bottle, drinking bottle, flask, milk bottle, bottle of water, thermos, thermos flask, "
@@ -180,12 +189,9 @@ def box_(
 )
 def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open: float, clearance: float) -> None:
     """Bottles: a hollow body with a neck, and a cap that turns, is pulled out or flips open."""
-    # the_cap: wall of a cap [m]
-    # the_ribs: around a cap
-    # hinge: radius [m]
-    the_cap = 0.002
-    the_ribs = 24
-    hinge = 0.002
+    the_cap = 0.002  # wall of a cap [m]
+    the_ribs = 24  # around a cap
+    hinge = 0.002  # radius [m]
     # Radius and height of the neck [m].
     the_neck = (min(0.5 * neck, 0.4 * width), max(0.02, 0.08 * height))
     wall = min(0.003, 0.25 * the_neck[0])
@@ -285,10 +291,8 @@ def bucket(
     w: Workshop, width: float, height: float, taper: float, wire: float, handle: str, open: float, clearance: float
 ) -> None:
     """Buckets: a vessel that widens upwards, and a bail that swings on studs at its sides."""
-    # below: from the rim down to the studs [m]
-    # the_bead: how far the rim stands out [m]
-    below = 0.025
-    the_bead = 0.002
+    below = 0.025  # from the rim down to the studs [m]
+    the_bead = 0.002  # how far the rim stands out [m]
     wall = 0.003
 
     def profile(inset: float, bottom: float, top: float) -> Sequence[tuple[float, float]]:
@@ -363,11 +367,9 @@ def bucket(
 )
 def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, open: float, clearance: float) -> None:
     """Trash cans: a pedal and a hinged lid, a flap that swings both ways, or a lid that is lifted off."""
-    # base: height of the solid foot that holds a pedal [m]
-    # pedal: way of the pedal [rad]
     wall = 0.004
-    base = 0.06
-    pedal = 0.2
+    base = 0.06  # height of the solid foot that holds a pedal [m]
+    pedal = 0.2  # way of the pedal [rad]
 
     # A round or a square bin, its axis at the origin, with a floor at the height of its foot.
     def bin(foot: float) -> Manifold:
@@ -469,23 +471,16 @@ def suitcase(
     w: Workshop, width: float, depth: float, height: float, wheels: int, handle: str, open: float, clearance: float
 ) -> None:
     """Suitcases that stand upright: two shells on a hinge at the left, wheels, and a handle that is drawn out."""
-    # the_fork: height of a wheel with its fork [m]
-    # the_grip: height of the grip above the shells when it is pushed in [m]
-    # round: radius of the corners [m]
-    # hinge: radius [m]
-    # opens: [rad]
-    # tube: radius of the drawn handle's tubes [m]
-    # wheel: radius [m]
-    the_fork = 0.056
-    the_grip = 0.021
-    round = 0.04
+    fork = 0.056  # height of a wheel with its fork [m]
+    the_grip = 0.021  # height of the grip above the shells when it is pushed in [m]
+    round = 0.04  # radius of the corners [m]
     wall = 0.003
-    hinge = 0.004
-    opens = 1.7
-    tube = 0.006
-    wheel = 0.021
+    hinge = 0.004  # radius [m]
+    opens = 1.7  # [rad]
+    tube = 0.006  # radius of the drawn handle's tubes [m]
+    wheel = 0.021  # radius [m]
     # Underside of the shells [m].
-    bottom = the_fork + clearance
+    bottom = fork + clearance
     # Upper side of the shells, below the grip where there is one [m].
     top = height - (the_grip if handle == "trolley" else 0.0)
 

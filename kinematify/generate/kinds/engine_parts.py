@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
+from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.procedural.solids import X, Y, Z, beam, slab
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
@@ -20,20 +17,21 @@ if TYPE_CHECKING:
 )
 def disc_brake(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     b.part(
         "carrier",
-        slab(0.15 * r, (0.2 * r, 0.3 * r), (-0.2 * r, 1.1 * r)),
-        slab(0.35 * r, (-0.32 * r, 0.3 * r), (1.05 * r, 1.2 * r)),
-        slab(0.35 * r, (-0.32 * r, -0.2 * r), (0.7 * r, 1.1 * r)),
-        slab(0.35 * r, (0.2 * r, 0.3 * r), (0.7 * r, 1.1 * r)),
+        p.slab(0.15, (0.2, 0.3), (-0.2, 1.1)),
+        p.slab(0.35, (-0.32, 0.3), (1.05, 1.2)),
+        p.slab(0.35, (-0.32, -0.2), (0.7, 1.1)),
+        p.slab(0.35, (0.2, 0.3), (0.7, 1.1)),
         look="grey steel",
     )
-    b.bore("carrier", b.cylinder(0.13 * r, (0, -r, 0), (0, r, 0)))
+    b.bore("carrier", p.cylinder(0.13, (0, -1, 0), (0, 1, 0)))
     b.part(
         "disc",
-        b.cylinder(r, (0, -0.03 * r, 0), (0, 0.03 * r, 0)),
-        b.cylinder(0.12 * r, (0, -0.2 * r, 0), (0, 0.4 * r, 0)),
-        b.cylinder(0.35 * r, (0, -0.15 * r, 0), (0, 0, 0)),
+        p.cylinder(1, (0, -0.03, 0), (0, 0.03, 0)),
+        p.cylinder(0.12, (0, -0.2, 0), (0, 0.4, 0)),
+        p.cylinder(0.35, (0, -0.15, 0), (0, 0, 0)),
         look="steel",
     )
     b.spin("disc", "carrier", Y, (0, 0, 0))
@@ -91,27 +89,22 @@ def camshaft(b: ObjectBuilder, followers: int) -> None:
 @kind(words="hydraulic gear pump", part_words={"drive_gear": "shaft, driver", "idler": "gear"}, radius=(0.03, 0.06))
 def gear_pump(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     b.part(
         "housing",
-        b.cylinder(1.6 * r, (-0.85 * r, -0.5 * r, 0), (-0.85 * r, 0.4 * r, 0)),
-        b.cylinder(1.6 * r, (0.85 * r, -0.5 * r, 0), (0.85 * r, 0.4 * r, 0)),
-        slab(0.85 * r, (-0.5 * r, 0.4 * r), 1.6 * r),
+        p.cylinder(1.6, (-0.85, -0.5, 0), (-0.85, 0.4, 0)),
+        p.cylinder(1.6, (0.85, -0.5, 0), (0.85, 0.4, 0)),
+        p.slab(0.85, (-0.5, 0.4), 1.6),
         look="metal",
     )
     b.cut(
-        "housing",
-        b.cylinder(1.12 * r, (-0.85 * r, -r, 0), (-0.85 * r, 0.05 * r, 0)),
-        b.cylinder(1.12 * r, (0.85 * r, -r, 0), (0.85 * r, 0.05 * r, 0)),
+        "housing", p.cylinder(1.12, (-0.85, -1, 0), (-0.85, 0.05, 0)), p.cylinder(1.12, (0.85, -1, 0), (0.85, 0.05, 0))
     )
-    b.bore(
-        "housing",
-        b.cylinder(0.29 * r, (-0.85 * r, -r, 0), (-0.85 * r, r, 0)),
-        b.cylinder(0.29 * r, (0.85 * r, -r, 0), (0.85 * r, 0.3 * r, 0)),
-    )
+    b.bore("housing", p.cylinder(0.29, (-0.85, -1, 0), (-0.85, 1, 0)), p.cylinder(0.29, (0.85, -1, 0), (0.85, 0.3, 0)))
     for s, name in zip((-1, 1), ("drive_gear", "idler"), strict=False):
         b.part(
             name,
-            b.cylinder(0.72 * r, (s * 0.85 * r, -0.4 * r, 0), (s * 0.85 * r, 0, 0)),
+            p.cylinder(0.72, (s * 0.85, -0.4, 0), (s * 0.85, 0, 0)),
             b.cylinder(0.25 * r, (s * 0.85 * r, -0.4 * r, 0), (s * 0.85 * r, 0.9 * r if s < 0 else 0.25 * r, 0)),
             [
                 beam(

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import choice, kind, whole
 from kinematify.generate.library.mechanisms import case, caster, legs, wheel
 from kinematify.generate.library.panels import grip
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(words="sliding door sideboard, sliding door cabinet", width=(1.0, 2.0), height=(0.5, 0.9), depth=(0.35, 0.5))
@@ -22,11 +18,7 @@ def sideboard_with_sliding_doors(b: ObjectBuilder, width: float, height: float, 
     """Two panels that pass each other before a case."""
     case(b, "case", (-width / 2, 0, 0.1), (width / 2, depth, height), opening=-Y, wall=0.02)
     legs(b, "case", (-width / 2, 0, 0), (width / 2, depth, 0.105), 0.05)
-    b.part(
-        "case",
-        slab(width / 2, (-0.06, 0.01), (0.1, 0.12)),
-        slab(width / 2, (-0.06, 0.01), (height - 0.02, height)),
-    )
+    b.part("case", slab(width / 2, (-0.06, 0.01), (0.1, 0.12)), slab(width / 2, (-0.06, 0.01), (height - 0.02, height)))
     play1 = b.gap(0.02)
     for k, s in enumerate((-1, 1)):
         y = -0.022 - 0.022 * k

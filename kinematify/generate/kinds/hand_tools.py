@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
+from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import knob
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled, slab
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, beam, slab
 
 
 @kind(
@@ -19,33 +16,33 @@ if TYPE_CHECKING:
     size=(0.9, 1.2),
 )
 def jigsaw(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.1, -0.03, 0.03), p(0.09, 0.03, 0.1)),
-        box(p(-0.1, -0.02, 0.14), p(0.08, 0.02, 0.175)),
-        box(p(-0.1, -0.02, 0.09), p(-0.06, 0.02, 0.16)),
-        box(p(0.05, -0.02, 0.09), p(0.08, 0.02, 0.16)),
+        p.slab((-0.1, 0.09), 0.03, (0.03, 0.1)),
+        p.slab((-0.1, 0.08), 0.02, (0.14, 0.175)),
+        p.slab((-0.1, -0.06), 0.02, (0.09, 0.16)),
+        p.slab((0.05, 0.08), 0.02, (0.09, 0.16)),
         look="green",
     )
-    b.bore("body", b.cylinder(0.006 * size, p(0.075, 0, 0), p(0.075, 0, 0.085)))
-    b.cut("body", box(p(-0.001, -0.009, 0.13), p(0.031, 0.009, 0.152)))
+    b.bore("body", p.cylinder(0.006, (0.075, 0, 0), (0.075, 0, 0.085)))
+    b.cut("body", p.slab((-0.001, 0.031), 0.009, (0.13, 0.152)))
     b.part(
         "base_plate",
-        box(p(-0.09, -0.04, 0), p(0.07, 0.04, 0.004)),
-        b.cylinder(0.012 * size, p(-0.06, 0, 0.016), p(0.04, 0, 0.016)),
-        box(p(-0.06, -0.008, 0.003), p(0.04, 0.008, 0.016)),
+        p.slab((-0.09, 0.07), 0.04, (0, 0.004)),
+        p.cylinder(0.012, (-0.06, 0, 0.016), (0.04, 0, 0.016)),
+        p.slab((-0.06, 0.04), 0.008, (0.003, 0.016)),
         look="steel",
     )
     b.hinge("base_plate", "body", X, p(0, 0, 0.016), 0.3, lower=-0.3)
     b.part(
         "blade",
-        b.cylinder(0.005 * size, p(0.075, 0, -0.01), p(0.075, 0, 0.07)),
-        box(p(0.07, -0.001, -0.09), p(0.08, 0.001, 0.0)),
+        p.cylinder(0.005, (0.075, 0, -0.01), (0.075, 0, 0.07)),
+        p.slab((0.07, 0.08), 0.001, (-0.09, 0.0)),
         look="steel",
     )
     b.slide("blade", "body", Z, 0.012, lower=-0.008)
-    b.part("trigger", box(p(0.0, -0.008, 0.128), p(0.03, 0.008, 0.142)), look="black")
+    b.part("trigger", p.slab((0.0, 0.03), 0.008, (0.128, 0.142)), look="black")
     b.slide("trigger", "body", Z, 0.006)
 
 
@@ -81,39 +78,39 @@ def hedge_trimmer(b: ObjectBuilder, length: float) -> None:
     words="nailer, brad nailer", part_words={"magazine": "nail magazine", "nose": "muzzle, safety tip"}, size=(0.8, 1.2)
 )
 def nail_gun(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.04, -0.035, 0.04), p(0.04, 0.035, 0.28)),
-        beam(0.035 * size, 0.045 * size, p(-0.02, 0, 0.2), p(-0.2, 0, 0.19), Y),
-        box(p(-0.2, -0.022, 0.03), p(-0.16, 0.022, 0.2)),
-        box(p(-0.17, -0.022, 0.03), p(-0.03, 0.022, 0.036)),
+        p.slab(0.04, 0.035, (0.04, 0.28)),
+        p.beam(0.035, 0.045, (-0.02, 0, 0.2), (-0.2, 0, 0.19), Y),
+        p.slab((-0.2, -0.16), 0.022, (0.03, 0.2)),
+        p.slab((-0.17, -0.03), 0.022, (0.03, 0.036)),
         look="yellow",
     )
-    b.bore("body", b.cylinder(0.012 * size, p(0.01, 0, 0), p(0.01, 0, 0.1)))
-    b.part("nose", b.cylinder(0.011 * size, p(0.01, 0, -0.03), p(0.01, 0, 0.08)), look="steel")
+    b.bore("body", p.cylinder(0.012, (0.01, 0, 0), (0.01, 0, 0.1)))
+    b.part("nose", p.cylinder(0.011, (0.01, 0, -0.03), (0.01, 0, 0.08)), look="steel")
     b.slide("nose", "body", Z, 0.012)
-    b.part("trigger", box(p(-0.075, -0.009, 0.145), p(-0.05, 0.009, 0.17)), look="black")
+    b.part("trigger", p.slab((-0.075, -0.05), 0.009, (0.145, 0.17)), look="black")
     b.slide("trigger", "body", Z, 0.006)
-    b.part("magazine", box(p(-0.155, -0.015, 0.037), p(-0.045, 0.015, 0.06)), look="steel")
+    b.part("magazine", p.slab((-0.155, -0.045), 0.015, (0.037, 0.06)), look="steel")
     b.slide("magazine", "body", -Y, 0.03)
 
 
 @kind(words="hot glue gun, craft glue gun", part_words={"trigger": "lever"}, size=(0.8, 1.3))
 def glue_gun(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.08, -0.018, 0.1), p(0.07, 0.018, 0.15)),
-        b.cone(0.012 * size, 0.003 * size, p(0.068, 0, 0.125), p(0.11, 0, 0.125)),
-        beam(0.035 * size, 0.03 * size, p(-0.05, 0, 0.11), p(-0.08, 0, 0.01), Y),
+        p.slab((-0.08, 0.07), 0.018, (0.1, 0.15)),
+        p.cone(0.012, 0.003, (0.068, 0, 0.125), (0.11, 0, 0.125)),
+        p.beam(0.035, 0.03, (-0.05, 0, 0.11), (-0.08, 0, 0.01), Y),
         look="blue",
     )
-    b.bore("body", b.cylinder(0.0065 * size, p(-0.1, 0, 0.125), p(0, 0, 0.125)))
-    b.part("stick", b.cylinder(0.0055 * size, p(-0.14, 0, 0.125), p(-0.01, 0, 0.125)), look="white")
+    b.bore("body", p.cylinder(0.0065, (-0.1, 0, 0.125), (0, 0, 0.125)))
+    b.part("stick", p.cylinder(0.0055, (-0.14, 0, 0.125), (-0.01, 0, 0.125)), look="white")
     b.slide("stick", "body", X, 0.008, lower=-0.04)
-    b.cut("body", box(p(-0.013, -0.008, 0), p(0.01, 0.008, 0.112)))
-    b.part("trigger", beam(0.014 * size, 0.012 * size, p(0, 0, 0.103), p(-0.02, 0, 0.03), Y), look="black")
+    b.cut("body", p.slab((-0.013, 0.01), 0.008, (0, 0.112)))
+    b.part("trigger", p.beam(0.014, 0.012, (0, 0, 0.103), (-0.02, 0, 0.03), Y), look="black")
     b.hinge("trigger", "body", Y, p(0, 0, 0.103), 0.25)
 
 
@@ -123,28 +120,28 @@ def glue_gun(b: ObjectBuilder, size: float) -> None:
     size=(0.9, 1.2),
 )
 def scroll_saw(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        box(p(-0.3, -0.12, 0), p(0.25, 0.12, 0.06)),
-        box(p(-0.3, -0.05, 0.05), p(-0.22, 0.05, 0.36)),
-        box(p(-0.3, -0.03, 0.32), p(0.16, 0.03, 0.37)),
-        box(p(0.02, -0.1, 0.055), p(0.06, -0.085, 0.148)),
+        p.slab((-0.3, 0.25), 0.12, (0, 0.06)),
+        p.slab((-0.3, -0.22), 0.05, (0.05, 0.36)),
+        p.slab((-0.3, 0.16), 0.03, (0.32, 0.37)),
+        p.box((0.02, -0.1, 0.055), (0.06, -0.085, 0.148)),
         look="blue steel",
     )
-    b.bore("base", b.cylinder(0.007 * size, p(0.14, 0, 0.02), p(0.14, 0, 0.35)))
+    b.bore("base", p.cylinder(0.007, (0.14, 0, 0.02), (0.14, 0, 0.35)))
     b.part(
         "table",
-        box(p(-0.05, -0.14, 0.165), p(0.22, 0.14, 0.175)),
-        box(p(0.01, -0.08, 0.1), p(0.07, -0.07, 0.166)),
+        p.slab((-0.05, 0.22), 0.14, (0.165, 0.175)),
+        p.box((0.01, -0.08, 0.1), (0.07, -0.07, 0.166)),
         look="metal",
     )
-    b.cut("table", box(p(0.128, -0.07, 0), p(0.152, 0.07, 1)))
+    b.cut("table", p.slab((0.128, 0.152), 0.07, (0, 1)))
     b.hinge("table", "base", X, p(0.04, -0.075, 0.13), 0.2, lower=-0.1)
     b.part(
         "blade",
-        b.cylinder(0.006 * size, p(0.14, 0, 0.29), p(0.14, 0, 0.34)),
-        box(p(0.138, -0.0008, 0.05), p(0.142, 0.0008, 0.3)),
+        p.cylinder(0.006, (0.14, 0, 0.29), (0.14, 0, 0.34)),
+        p.slab((0.138, 0.142), 0.0008, (0.05, 0.3)),
         look="steel",
     )
     b.slide("blade", "base", Z, 0.006, lower=-0.008)
@@ -215,23 +212,21 @@ def folding_ruler(b: ObjectBuilder, segments: int) -> None:
     size=(0.9, 1.2),
 )
 def sextant(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
-        [b.rod(0.005 * size, p(0, 0, 0.2), p(s * 0.1, 0, 0.02)) for s in (-1, 1)],
+        [p.rod(0.005, (0, 0, 0.2), (s * 0.1, 0, 0.02)) for s in (-1, 1)],
         [
-            b.rod(
-                0.007 * size, p(0.2 * sin(a), 0, 0.2 - 0.2 * cos(a)), p(0.2 * sin(a + 0.1), 0, 0.2 - 0.2 * cos(a + 0.1))
-            )
+            p.rod(0.007, (0.2 * sin(a), 0, 0.2 - 0.2 * cos(a)), (0.2 * sin(a + 0.1), 0, 0.2 - 0.2 * cos(a + 0.1)))
             for a in [-0.55 + 0.1 * k for k in range(11)]
         ],
-        b.cylinder(0.01 * size, p(0, -0.014, 0.2), p(0, 0.006, 0.2)),
-        b.cylinder(0.012 * size, p(-0.09, 0.025, 0.12), p(0.03, 0.025, 0.12)),
-        box(p(-0.06, 0, 0.1), p(-0.05, 0.025, 0.12)),
-        box(p(0.01, 0, 0.1), p(0.03, 0.025, 0.12)),
-        b.rod(0.004 * size, p(-0.07, 0, 0.1), p(0.07, 0, 0.1)),
+        p.cylinder(0.01, (0, -0.014, 0.2), (0, 0.006, 0.2)),
+        p.cylinder(0.012, (-0.09, 0.025, 0.12), (0.03, 0.025, 0.12)),
+        p.box((-0.06, 0, 0.1), (-0.05, 0.025, 0.12)),
+        p.box((0.01, 0, 0.1), (0.03, 0.025, 0.12)),
+        p.rod(0.004, (-0.07, 0, 0.1), (0.07, 0, 0.1)),
         look="brass",
     )
-    b.part("arm", beam(0.03 * size, 0.004 * size, p(0, -0.0105, 0.225), p(0, -0.0105, -0.03), Y), look="brass")
-    b.cut("arm", b.cylinder(0.0106 * size, p(0, -1, 0.2), p(0, 1, 0.2)))
+    b.part("arm", p.beam(0.03, 0.004, (0, -0.0105, 0.225), (0, -0.0105, -0.03), Y), look="brass")
+    b.cut("arm", p.cylinder(0.0106, (0, -1, 0.2), (0, 1, 0.2)))
     b.hinge("arm", "frame", Y, p(0, 0, 0.2), 0.5, lower=-0.5)

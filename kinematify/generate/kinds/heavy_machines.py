@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from math import cos, degrees, pi, radians, sin, sqrt, tan
 from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
 from kinematify.generate.kinds.limbs import track_ring, track_top, tracked, turntable
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.procedural.pieces.bearing_pieces import bent_fork, fork_room, stub
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, off, rod, slab, union, vector
+from kinematify.generate.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
 
 
@@ -46,9 +44,8 @@ def excavator(
 ) -> None:
     """Excavators: a house on tracks, a boom, a stick and a bucket on pins."""
     # leans: house, boom below and above its bend, stick and bucket: from the upright to the front [rad].
-    # swings: Positive upwards [rad].
     leans = (0.0, 0.45, 1.25, 2.3, 2.7)
-    swings = {"boom": (-0.35, 0.3), "stick": (-0.3, 0.8), "bucket": (-0.8, 0.9)}
+    swings = {"boom": (-0.35, 0.3), "stick": (-0.3, 0.8), "bucket": (-0.8, 0.9)}  # positive upwards [rad]
 
     # Platform, cab, engine and counterweight; returns the boom's pin and the radius of its knuckles.
     def house() -> tuple[FloatArray, float]:
@@ -155,10 +152,8 @@ def crane(
     w: Workshop, kind: str, height: float, jib: float, sections: int, wheels: int, open: float, clearance: float
 ) -> None:
     """Cranes: a tower with a trolley on its jib, or a house on tracks with a boom that lifts and lengthens."""
-    # lean: of a mobile crane's boom at zero, from the upright to the front [rad]
-    # rises: of the boom, positive upwards [rad]
-    lean = 0.7
-    rises = (-0.35, 0.5)
+    lean = 0.7  # of a mobile crane's boom at zero, from the upright to the front [rad]
+    rises = (-0.35, 0.5)  # of the boom, positive upwards [rad]
 
     # Four posts with rungs, closed by a plate on top.
     def mast(half: float, low: float, high: float) -> Sequence[Manifold]:
@@ -323,12 +318,9 @@ def tracked_tree(
     clearance: float,
 ) -> None:
     """Linkages in the shape of a tree on tracks: branches of links around a trunk that turns. No such thing is sold."""
-    # start: lean of the trunk's arms from the upright [rad]
-    # leans: of the links of a branch, in turn [rad]
-    # swing: of every link, both ways [rad]
-    start = 0.6
-    leans = (1.0, 0.5)
-    swing = 0.4
+    start = 0.6  # lean of the trunk's arms from the upright [rad]
+    leans = (1.0, 0.5)  # of the links of a branch, in turn [rad]
+    swing = 0.4  # of every link, both ways [rad]
 
     def along(lean: float) -> FloatArray:
         return vector(0.0, -sin(lean), cos(lean))
@@ -340,12 +332,12 @@ def tracked_tree(
     tracked(w, clearance, "tracks", tracks_length, tracks_width, wheels)
     turntable(w, clearance, "trunk", "tracks", tracks_length, tracks_width)
     low = tracks_top - 0.2 * tracks_ring
-    its_ring = max(2.5 * joint_radius, 2.1 * joint_radius / sin(pi / max(branches, 3)))
-    w.add("trunk", cylinder(max(1.6 * joint_radius, 0.3 * its_ring), low, low + trunk))
+    ring = max(2.5 * joint_radius, 2.1 * joint_radius / sin(pi / max(branches, 3)))
+    w.add("trunk", cylinder(max(1.6 * joint_radius, 0.3 * ring), low, low + trunk))
     for k in range(branches):
         # An arm of the trunk, and links one after the other; built towards -y and then turned about the trunk.
         angle = 360.0 * k / branches
-        first = vector(0.0, -its_ring, low + trunk + 1.2 * its_ring)
+        first = vector(0.0, -ring, low + trunk + 1.2 * ring)
         cosine = cos(radians(angle))
         sine = sin(radians(angle))
         turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])

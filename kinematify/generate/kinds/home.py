@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, slab
 
 
 @kind("door handle", words="lever handle, door lever, door fitting, lock fitting", size=(0.9, 1.1))
 def lever_handle(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part("plate", box(p(-0.022, 0, -0.12), p(0.022, 0.008, 0.12)), look="brass")
+    p = b.sized(size)
+    b.part("plate", p.slab(0.022, (0, 0.008), 0.12), look="brass")
     lever(b, "lever", "plate", p(0, 0, 0.05), -Y, X, 0.12 * size, reach=0.6, material="brass")
-    b.bore("plate", b.cylinder(0.008 * size, p(0, -0.1, -0.05), p(0, 0.1, -0.05)))
+    b.bore("plate", p.cylinder(0.008, (0, -0.1, -0.05), (0, 0.1, -0.05)))
     b.part(
         "key",
-        b.cylinder(0.0068 * size, p(0, -0.001, -0.05), p(0, 0.007, -0.05)),
-        b.cylinder(0.003 * size, p(0, -0.02, -0.05), p(0, 0.03, -0.05)),
-        b.torus(0.012 * size, 0.003 * size, p(0, -0.033, -0.05), X),
-        box(p(-0.002, 0.018, -0.062), p(0.002, 0.03, -0.05)),
+        p.cylinder(0.0068, (0, -0.001, -0.05), (0, 0.007, -0.05)),
+        p.cylinder(0.003, (0, -0.02, -0.05), (0, 0.03, -0.05)),
+        p.torus(0.012, 0.003, (0, -0.033, -0.05), X),
+        p.slab(0.002, (0.018, 0.03), (-0.062, -0.05)),
         look="steel",
     )
     b.hinge("key", "plate", -Y, p(0, 0, -0.05), 1.57, lower=-1.57)
@@ -34,22 +30,13 @@ def lever_handle(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="rim lock, latch lock, dead lock, spring latch, night latch, deadbolt, door lock", size=(0.8, 1.2))
 def mortise_lock(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "case",
-        box(p(-0.04, -0.012, -0.08), p(0.04, 0.012, 0.08)),
-        box(p(0.04, -0.015, -0.1), p(0.045, 0.015, 0.1)),
-        look="steel",
-    )
-    b.cut(
-        "case",
-        box(p(-0.03, -0.0085, -0.0465), p(0.1, 0.0085, -0.0185)),
-        box(p(-0.03, -0.0065, 0.0335), p(0.1, 0.0065, 0.0565)),
-    )
-    b.part("bolt", box(p(-0.02, -0.0075, -0.0455), p(0.047, 0.0075, -0.0195)), look="brass")
+    p = b.sized(size)
+    b.part("case", p.slab(0.04, 0.012, 0.08), p.slab((0.04, 0.045), 0.015, 0.1), look="steel")
+    b.cut("case", p.slab((-0.03, 0.1), 0.0085, (-0.0465, -0.0185)), p.slab((-0.03, 0.1), 0.0065, (0.0335, 0.0565)))
+    b.part("bolt", p.slab((-0.02, 0.047), 0.0075, (-0.0455, -0.0195)), look="brass")
     b.slide("bolt", "case", X, 0.02)
-    b.part("latch", box(p(-0.01, -0.0055, 0.0345), p(0.06, 0.0055, 0.0555)), look="brass")
-    b.cut("latch", beam(0.02 * size, 0.04 * size, p(0.045, -0.02, 0.045), p(0.08, 0.005, 0.045), Z))
+    b.part("latch", p.slab((-0.01, 0.06), 0.0055, (0.0345, 0.0555)), look="brass")
+    b.cut("latch", p.beam(0.02, 0.04, (0.045, -0.02, 0.045), (0.08, 0.005, 0.045), Z))
     b.slide("latch", "case", -X, 0.014)
     knob(b, "knob", "case", p(0, -0.012, 0.005), 0.016 * size, -Y, high=0.03 * size, reach=1.6, material="brass")
 
@@ -104,11 +91,7 @@ def sliding_gate(b: ObjectBuilder, width: float, height: float) -> None:
 def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
     w = width / 2
     b.part("case", slab(w, (0, 0.22), (0, 0.28)), look="white")
-    b.cut(
-        "case",
-        slab(w - 0.03, (-0.1, 0.14), (0.02, 0.12)),
-        slab(w - 0.01, (0.02, 0.21), (0.14, 0.27)),
-    )
+    b.cut("case", slab(w - 0.03, (-0.1, 0.14), (0.02, 0.12)), slab(w - 0.01, (0.02, 0.21), (0.14, 0.27)))
     for k, z in enumerate(spread(number, 0.02, 0.12)):
         b.part(f"louver_{k}", slab(w - 0.032, (-0.005, 0.02), (z - 0.002, z + 0.002)), look="grey")
         b.hinge(f"louver_{k}", "case", X, (0, 0.008, z), 0.35, lower=-0.35)
@@ -141,11 +124,7 @@ def hamster_cage(b: ObjectBuilder, width: float) -> None:
         b.cylinder(0.006, (0.3 * w, 0.08, 0.2), (0.3 * w, -0.05, 0.2)),
         look="blue",
     )
-    b.cut(
-        "cage",
-        slab(w - 0.006, 0.174, (0.008, 0.079)),
-        box((-0.8 * w, -0.2, 0.09), (-0.3 * w, -0.1, 0.3)),
-    )
+    b.cut("cage", slab(w - 0.006, 0.174, (0.008, 0.079)), box((-0.8 * w, -0.2, 0.09), (-0.3 * w, -0.1, 0.3)))
     b.part(
         "wheel",
         b.tube(0.1, 0.092, (0.3 * w, 0.06, 0.2), (0.3 * w, -0.04, 0.2)),
@@ -270,22 +249,22 @@ def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
     size=(0.9, 1.1),
 )
 def passenger_seat(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "seat",
-        box(p(-0.26, -0.25, 0.25), p(0.26, 0.25, 0.42)),
-        [box(p(s * 0.2 - 0.03, -0.2, 0), p(s * 0.2 + 0.03, 0.2, 0.26)) for s in (-1, 1)],
-        [box(p(s * 0.31, -0.2, 0.3), p(s * 0.27, 0.34, 0.62)) for s in (-1, 1)],
-        [box(p(s * 0.28, -0.1, 0.27), p(s * 0.25, 0.1, 0.4)) for s in (-1, 1)],
+        p.slab(0.26, 0.25, (0.25, 0.42)),
+        [p.slab((s * 0.2 - 0.03, s * 0.2 + 0.03), 0.2, (0, 0.26)) for s in (-1, 1)],
+        [p.box((s * 0.31, -0.2, 0.3), (s * 0.27, 0.34, 0.62)) for s in (-1, 1)],
+        [p.slab((s * 0.28, s * 0.25), 0.1, (0.27, 0.4)) for s in (-1, 1)],
         look="grey",
     )
-    b.part("back", box(p(-0.26, 0.255, 0.35), p(0.26, 0.37, 1)), look="blue")
-    b.cut("back", [b.cylinder(0.009 * size, p(s * 0.08, 0.31, 0.8), p(s * 0.08, 0.31, 2)) for s in (-1, 1)])
+    b.part("back", p.slab(0.26, (0.255, 0.37), (0.35, 1)), look="blue")
+    b.cut("back", [p.cylinder(0.009, (s * 0.08, 0.31, 0.8), (s * 0.08, 0.31, 2)) for s in (-1, 1)])
     b.hinge("back", "seat", -X, p(0, 0.31, 0.36), 0.4, lower=0)
     b.part(
         "headrest",
-        box(p(-0.14, 0.26, 1.03), p(0.14, 0.36, 1.22)),
-        [b.cylinder(0.007 * size, p(s * 0.08, 0.31, 0.83), p(s * 0.08, 0.31, 1.04)) for s in (-1, 1)],
+        p.slab(0.14, (0.26, 0.36), (1.03, 1.22)),
+        [p.cylinder(0.007, (s * 0.08, 0.31, 0.83), (s * 0.08, 0.31, 1.04)) for s in (-1, 1)],
         look="blue",
     )
     b.slide("headrest", "back", Z, 0.1, lower=-0.02)
@@ -340,27 +319,27 @@ def atm(b: ObjectBuilder, width: float) -> None:
 @kind(words="cargo container, container with doors, freight container, storage container, sea container")
 def shipping_container(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "container",
-        box(p(-1.2, 0, 0), p(1.2, 6, 2.5)),
-        [box(p(s * 1.2, y - 0.05, 0.1), p(s * 1.23, y + 0.05, 2.4)) for s in (-1, 1) for y in spread(12, 0.2, 5.8)],
+        p.slab(1.2, (0, 6), (0, 2.5)),
+        [p.box((s * 1.2, y - 0.05, 0.1), (s * 1.23, y + 0.05, 2.4)) for s in (-1, 1) for y in spread(12, 0.2, 5.8)],
         look="dark blue steel",
     )
-    b.cut("container", box(p(-1.15, -1, 0.1), p(1.15, 5.95, 2.42)))
+    b.cut("container", p.slab(1.15, (-1, 5.95), (0.1, 2.42)))
     for k, s in enumerate((-1, 1)):
         b.part(
             f"door_{k}",
-            box(p(s * 0.01, -0.06, 0.02), p(s * 1.2, -0.005, 2.48)),
-            [box(p(s * 0.3 - 0.06, -0.13, z - 0.05), p(s * 0.3 + 0.06, -0.05, z + 0.05)) for z in (0.4, 2.1)],
+            p.box((s * 0.01, -0.06, 0.02), (s * 1.2, -0.005, 2.48)),
+            [p.box((s * 0.3 - 0.06, -0.13, z - 0.05), (s * 0.3 + 0.06, -0.05, z + 0.05)) for z in (0.4, 2.1)],
             look="dark blue steel",
         )
-        b.cut(f"door_{k}", b.cylinder(0.0225 * size, p(s * 0.3, -0.1, -1), p(s * 0.3, -0.1, 3)))
+        b.cut(f"door_{k}", p.cylinder(0.0225, (s * 0.3, -0.1, -1), (s * 0.3, -0.1, 3)))
         b.hinge(f"door_{k}", "container", s * Z, p(s * 1.2, -0.06, 0), 2.0)
         b.part(
             f"bar_{k}",
-            b.cylinder(0.02 * size, p(s * 0.3, -0.1, 0.03), p(s * 0.3, -0.1, 2.47)),
-            box(p(s * 0.3, -0.12, 1.1), p(s * 0.6, -0.09, 1.16)),
+            p.cylinder(0.02, (s * 0.3, -0.1, 0.03), (s * 0.3, -0.1, 2.47)),
+            p.box((s * 0.3, -0.12, 1.1), (s * 0.6, -0.09, 1.16)),
             look="steel",
         )
         b.hinge(f"bar_{k}", f"door_{k}", -s * Z, p(s * 0.3, -0.1, 0), 1.2)
@@ -389,31 +368,26 @@ def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
 
 @kind(walls=100, words="hydrant, standpipe, garden hydrant", size=(0.9, 1.1))
 def fire_hydrant(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.14 * size, p(0, 0, 0), p(0, 0, 0.05)),
-        b.cylinder(0.1 * size, p(0, 0, 0.04), p(0, 0, 0.6)),
-        ball(0.1 * size, p(0, 0, 0.6)),
-        [b.cylinder(0.06 * size, p(s * 0.05, 0, 0.45), p(s * 0.15, 0, 0.45)) for s in (-1, 1)],
-        b.cylinder(0.025 * size, p(0, 0, 0.68), p(0, 0, 0.72)),
+        p.cylinder(0.14, 0, 0.05),
+        p.cylinder(0.1, 0.04, 0.6),
+        p.ball(0.1, (0, 0, 0.6)),
+        [p.cylinder(0.06, (s * 0.05, 0, 0.45), (s * 0.15, 0, 0.45)) for s in (-1, 1)],
+        p.cylinder(0.025, 0.68, 0.72),
         look="red steel",
     )
-    b.cut("body", b.cylinder(0.085 * size, p(0, 0, 0.06), p(0, 0, 0.6)))
+    b.cut("body", p.cylinder(0.085, 0.06, 0.6))
     for k, s in enumerate((-1, 1)):
         b.part(
             f"cap_{k}",
-            b.cylinder(0.07 * size, p(s * 0.151, 0, 0.45), p(s * 0.185, 0, 0.45)),
-            box(p(s * 0.18, -0.015, 0.435), p(s * 0.215, 0.015, 0.465)),
+            p.cylinder(0.07, (s * 0.151, 0, 0.45), (s * 0.185, 0, 0.45)),
+            p.slab((s * 0.18, s * 0.215), 0.015, (0.435, 0.465)),
             look="yellow steel",
         )
         b.spin(f"cap_{k}", "body", s * X, p(0, 0, 0.45))
-    b.part(
-        "valve",
-        b.cylinder(0.04 * size, p(0, 0, 0.721), p(0, 0, 0.75)),
-        box(p(-0.012, -0.012, 0.74), p(0.012, 0.012, 0.78)),
-        look="red steel",
-    )
+    b.part("valve", p.cylinder(0.04, 0.721, 0.75), p.slab(0.012, 0.012, (0.74, 0.78)), look="red steel")
     b.spin("valve", "body", Z, p(0, 0, 0))
 
 

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, button, case, knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
@@ -287,11 +282,7 @@ def urn(b: ObjectBuilder, radius: float, height: float) -> None:
         look="steel",
     )
     g = b.gap(radius)
-    b.part(
-        "lid",
-        b.cone(radius, 0.3 * radius, height + g, height + 0.05),
-        ball(0.02, (0, 0, height + 0.06)),
-    )
+    b.part("lid", b.cone(radius, 0.3 * radius, height + g, height + 0.05), ball(0.02, (0, 0, height + 0.06)))
     b.slide("lid", "urn", Z, 0.15)
     b.part(
         "spigot",

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import button, case, knob
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, scaled, slab
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, slab
 
 
 @kind(words="stovetop espresso maker, espresso pot", radius=(0.035, 0.055), height=(0.13, 0.2))
@@ -119,20 +115,20 @@ def juicer(b: ObjectBuilder, radius: float, height: float) -> None:
 
 @kind(words="drum grater", size=(0.9, 1.3))
 def rotary_grater(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.tube(0.03 * size, 0.026 * size, p(0, -0.03, 0.1), p(0, 0.04, 0.1)),
-        box(p(-0.015, 0.02, 0.127), p(0.015, 0.04, 0.26)),
-        box(p(-0.02, -0.02, 0.128), p(0.02, 0.02, 0.15)),
+        p.tube(0.03, 0.026, (0, -0.03, 0.1), (0, 0.04, 0.1)),
+        p.slab(0.015, (0.02, 0.04), (0.127, 0.26)),
+        p.slab(0.02, 0.02, (0.128, 0.15)),
         look="white",
     )
     b.part(
         "drum",
-        b.cylinder(0.024 * size, p(0, -0.04, 0.1), p(0, 0.03, 0.1)),
-        b.cylinder(0.008 * size, p(0, -0.08, 0.1), p(0, -0.03, 0.1)),
-        beam(0.014 * size, 0.008 * size, p(0, -0.075, 0.1), p(0.08, -0.075, 0.1), Y),
-        b.cylinder(0.008 * size, p(0.075, -0.12, 0.1), p(0.075, -0.07, 0.1)),
+        p.cylinder(0.024, (0, -0.04, 0.1), (0, 0.03, 0.1)),
+        p.cylinder(0.008, (0, -0.08, 0.1), (0, -0.03, 0.1)),
+        p.beam(0.014, 0.008, (0, -0.075, 0.1), (0.08, -0.075, 0.1), Y),
+        p.cylinder(0.008, (0.075, -0.12, 0.1), (0.075, -0.07, 0.1)),
         look="steel",
     )
     b.spin("drum", "body", -Y, p(0, 0, 0.1))
@@ -140,27 +136,22 @@ def rotary_grater(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="apple corer, crank peeler", size=(0.9, 1.2))
 def apple_peeler(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "base",
-        box(p(-0.16, -0.04, 0), p(0.16, 0.04, 0.015)),
-        box(p(0.05, -0.02, 0.01), p(0.08, 0.02, 0.1)),
-        look="red steel",
-    )
-    b.bore("base", b.cylinder(0.0085 * size, p(0.04, 0, 0.08), p(0.1, 0, 0.08)))
+    p = b.sized(size)
+    b.part("base", p.slab(0.16, 0.04, (0, 0.015)), p.slab((0.05, 0.08), 0.02, (0.01, 0.1)), look="red steel")
+    b.bore("base", p.cylinder(0.0085, (0.04, 0, 0.08), (0.1, 0, 0.08)))
     b.part(
         "shaft",
-        b.cylinder(0.0075 * size, p(-0.06, 0, 0.08), p(0.15, 0, 0.08)),
-        beam(0.012 * size, 0.01 * size, p(0.145, 0, 0.08), p(0.145, 0, 0.15), X),
-        b.cylinder(0.01 * size, p(0.14, 0, 0.145), p(0.2, 0, 0.145)),
+        p.cylinder(0.0075, (-0.06, 0, 0.08), (0.15, 0, 0.08)),
+        p.beam(0.012, 0.01, (0.145, 0, 0.08), (0.145, 0, 0.15), X),
+        p.cylinder(0.01, (0.14, 0, 0.145), (0.2, 0, 0.145)),
         look="steel",
     )
     b.spin("shaft", "base", X, p(0, 0, 0.08))
     b.part(
         "arm",
-        b.cylinder(0.01 * size, p(-0.1, 0.02, 0.016), p(-0.1, 0.02, 0.03)),
-        beam(0.01 * size, 0.012 * size, p(-0.1, 0.02, 0.03), p(-0.1, 0.02, 0.13), X),
-        beam(0.008 * size, 0.02 * size, p(-0.1, 0.02, 0.125), p(-0.06, 0.05, 0.125)),
+        p.cylinder(0.01, (-0.1, 0.02, 0.016), (-0.1, 0.02, 0.03)),
+        p.beam(0.01, 0.012, (-0.1, 0.02, 0.03), (-0.1, 0.02, 0.13), X),
+        p.beam(0.008, 0.02, (-0.1, 0.02, 0.125), (-0.06, 0.05, 0.125)),
         look="steel",
     )
     b.hinge("arm", "base", Z, p(-0.1, 0.02, 0.02), 0.8, lower=0)
@@ -169,35 +160,17 @@ def apple_peeler(b: ObjectBuilder, size: float) -> None:
 @kind(words="tea pot, coffee jug, pitcher with lid, coffee pot", radius=(0.06, 0.1))
 def teapot(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     b.part(
         "pot",
-        b.lathe(
-            [(0, 0), (0.6 * r, 0), (r, 0.6 * r), (0.9 * r, 1.1 * r), (0.5 * r, 1.45 * r), (0, 1.45 * r)], (0, 0, 0)
-        ),
-        b.cone(0.28 * r, 0.12 * r, (0, -0.8 * r, 0.6 * r), (0, -1.7 * r, 1.4 * r)),
-        b.torus(0.45 * r, 0.08 * r, (0, 1.15 * r, 0.8 * r), X),
+        p.lathe([(0, 0), (0.6, 0), (1, 0.6), (0.9, 1.1), (0.5, 1.45), (0, 1.45)], (0, 0, 0)),
+        p.cone(0.28, 0.12, (0, -0.8, 0.6), (0, -1.7, 1.4)),
+        p.torus(0.45, 0.08, (0, 1.15, 0.8), X),
         look="white ceramic",
     )
-    b.cut(
-        "pot",
-        b.lathe(
-            [
-                (0, 0.08 * r),
-                (0.55 * r, 0.08 * r),
-                (0.9 * r, 0.6 * r),
-                (0.8 * r, 1.05 * r),
-                (0.4 * r, 1.4 * r),
-                (0.4 * r, 2 * r),
-                (0, 2 * r),
-            ],
-            (0, 0, 0),
-        ),
-    )
+    b.cut("pot", p.lathe([(0, 0.08), (0.55, 0.08), (0.9, 0.6), (0.8, 1.05), (0.4, 1.4), (0.4, 2), (0, 2)], (0, 0, 0)))
     b.part(
-        "lid",
-        b.cone(0.48 * r, 0.15 * r, 1.45 * r + 0.001, 1.65 * r),
-        ball(0.1 * r, (0, 0, 1.72 * r)),
-        look="white ceramic",
+        "lid", b.cone(0.48 * r, 0.15 * r, 1.45 * r + 0.001, 1.65 * r), p.ball(0.1, (0, 0, 1.72)), look="white ceramic"
     )
     b.slide("lid", "pot", Z, r)
 
@@ -235,16 +208,11 @@ def travel_mug(b: ObjectBuilder, radius: float, height: float) -> None:
 
 @kind(words="egg cutter", size=(0.9, 1.2))
 def egg_slicer(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "base",
-        box(p(-0.045, -0.06, 0), p(0.045, 0.06, 0.02)),
-        box(p(-0.045, 0.06, 0), p(0.045, 0.075, 0.024)),
-        look="white",
-    )
-    b.cut("base", b.cylinder(0.028 * size, p(0, 0, 0.008), p(0, 0, 0.03)))
-    b.part("frame", box(p(-0.045, -0.06, 0.025), p(0.045, 0.075, 0.031)), look="steel")
-    b.cut("frame", box(p(-0.037, -0.05, 0), p(0.037, 0.05, 0.1)))
+    p = b.sized(size)
+    b.part("base", p.slab(0.045, 0.06, (0, 0.02)), p.slab(0.045, (0.06, 0.075), (0, 0.024)), look="white")
+    b.cut("base", p.cylinder(0.028, 0.008, 0.03))
+    b.part("frame", p.slab(0.045, (-0.06, 0.075), (0.025, 0.031)), look="steel")
+    b.cut("frame", p.slab(0.037, 0.05, (0, 0.1)))
     for x in spread(7, -0.037 * size, 0.037 * size):
         b.part("frame", b.cylinder(0.0008, (x, -0.055 * size, 0.028 * size), (x, 0.055 * size, 0.028 * size)))
     b.hinge("frame", "base", -X, p(0, 0.075, 0.025), 1.6)
@@ -264,13 +232,9 @@ def spice_rack(b: ObjectBuilder, number: int) -> None:
 
 @kind(words="wind up timer, cooking timer, timer", radius=(0.03, 0.05))
 def kitchen_timer(b: ObjectBuilder, radius: float) -> None:
-    b.part("base", b.cone(radius, 0.9 * radius, 0, 0.4 * radius), look="white")
-    b.part(
-        "dial",
-        b.cone(0.9 * radius, 0.5 * radius, 0.42 * radius, 1.1 * radius),
-        slab(0.08 * radius, (-0.85 * radius, 0), (0.42 * radius, 1.15 * radius)),
-        look="red",
-    )
+    p = b.sized(radius)
+    b.part("base", p.cone(1, 0.9, 0, 0.4), look="white")
+    b.part("dial", p.cone(0.9, 0.5, 0.42, 1.1), p.slab(0.08, (-0.85, 0), (0.42, 1.15)), look="red")
     b.hinge("dial", "base", Z, (0, 0, 0), 5.5)
 
 
@@ -702,21 +666,17 @@ def toilet_brush(b: ObjectBuilder, height: float) -> None:
 
 @kind(walls=2.5, words="toilet roll holder, paper roll holder", size=(0.9, 1.2))
 def toilet_paper_holder(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "mount",
-        box(p(-0.07, 0, 0), p(0.07, 0.01, 0.1)),
-        [box(p(s * 0.058, -0.07, 0.02), p(s * 0.066, 0.005, 0.05)) for s in (-1, 1)],
-        b.cylinder(0.008 * size, p(-0.06, -0.06, 0.035), p(0.06, -0.06, 0.035)),
+        p.slab(0.07, (0, 0.01), (0, 0.1)),
+        [p.box((s * 0.058, -0.07, 0.02), (s * 0.066, 0.005, 0.05)) for s in (-1, 1)],
+        p.cylinder(0.008, (-0.06, -0.06, 0.035), (0.06, -0.06, 0.035)),
         look="chrome",
     )
-    b.part(
-        "roll",
-        b.tube(0.05 * size, 0.0095 * size, p(-0.05, -0.06, 0.035), p(0.05, -0.06, 0.035)),
-        look="white cardboard",
-    )
+    b.part("roll", p.tube(0.05, 0.0095, (-0.05, -0.06, 0.035), (0.05, -0.06, 0.035)), look="white cardboard")
     b.spin("roll", "mount", X, p(0, -0.06, 0.035))
-    b.part("cover", box(p(-0.062, -0.13, 0.094), p(0.062, -0.002, 0.098)), look="chrome")
+    b.part("cover", p.slab(0.062, (-0.13, -0.002), (0.094, 0.098)), look="chrome")
     b.hinge("cover", "mount", -X, p(0, -0.002, 0.098), 1.4)
 
 
@@ -739,17 +699,12 @@ def paper_towel_dispenser(b: ObjectBuilder, width: float, height: float) -> None
 
 @kind(words="toothbrush", size=(0.9, 1.1))
 def electric_toothbrush(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "handle",
-        b.rod(0.014 * size, p(0, 0, 0.016), p(0, 0, 0.12)),
-        b.cone(0.012 * size, 0.004 * size, p(0, 0, 0.12), p(0, 0, 0.2)),
-        look="white",
-    )
-    b.part("head", b.cylinder(0.007 * size, p(0, -0.0065, 0.195), p(0, -0.016, 0.195)), look="blue")
+    p = b.sized(size)
+    b.part("handle", p.rod(0.014, 0.016, 0.12), p.cone(0.012, 0.004, 0.12, 0.2), look="white")
+    b.part("head", p.cylinder(0.007, (0, -0.0065, 0.195), (0, -0.016, 0.195)), look="blue")
     b.hinge("head", "handle", -Y, p(0, 0, 0.195), 0.6, lower=-0.6)
-    b.bore("handle", box(p(-0.006, -0.03, 0.08), p(0.006, -0.008, 0.1)))
-    b.part("button", box(p(-0.0055, -0.017, 0.0805), p(0.0055, -0.011, 0.0995)), look="grey rubber")
+    b.bore("handle", p.slab(0.006, (-0.03, -0.008), (0.08, 0.1)))
+    b.part("button", p.slab(0.0055, (-0.017, -0.011), (0.0805, 0.0995)), look="grey rubber")
     b.slide("button", "handle", Y, 0.002)
 
 

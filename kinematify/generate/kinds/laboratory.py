@@ -3,42 +3,30 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import case, caster, knob, legs
 from kinematify.generate.library.panels import carcass, drawer, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, slab, vector
 
 
 @kind(words="micropipette, dropper, pipettor", size=(0.9, 1.1))
 def pipette(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.014 * size, p(0, 0, 0.12), p(0, 0, 0.22)),
-        b.cone(0.004 * size, 0.012 * size, p(0, 0, 0.02), p(0, 0, 0.12)),
-        b.cone(0.001 * size, 0.004 * size, p(0, 0, -0.04), p(0, 0, 0.022)),
-        box(p(-0.012, 0.005, 0.19), p(0.012, 0.035, 0.2)),
+        p.cylinder(0.014, 0.12, 0.22),
+        p.cone(0.004, 0.012, 0.02, 0.12),
+        p.cone(0.001, 0.004, -0.04, 0.022),
+        p.slab(0.012, (0.005, 0.035), (0.19, 0.2)),
         look="white",
     )
-    b.bore("body", b.cylinder(0.0042 * size, p(0, 0, 0.17), p(0, 0, 0.3)))
-    b.part(
-        "plunger",
-        b.cylinder(0.003 * size, p(0, 0, 0.19), p(0, 0, 0.245)),
-        b.cylinder(0.011 * size, p(0, 0, 0.24), p(0, 0, 0.25)),
-        look="blue",
-    )
+    b.bore("body", p.cylinder(0.0042, 0.17, 0.3))
+    b.part("plunger", p.cylinder(0.003, 0.19, 0.245), p.cylinder(0.011, 0.24, 0.25), look="blue")
     b.slide("plunger", "body", -Z, 0.016)
     b.part(
-        "ejector",
-        box(p(0.015, -0.006, 0.1), p(0.019, 0.006, 0.215)),
-        box(p(0.015, -0.006, 0.21), p(0.03, 0.006, 0.218)),
-        look="grey",
+        "ejector", p.slab((0.015, 0.019), 0.006, (0.1, 0.215)), p.slab((0.015, 0.03), 0.006, (0.21, 0.218)), look="grey"
     )
     b.slide("ejector", "body", -Z, 0.012)
 
@@ -58,11 +46,7 @@ def fume_hood(b: ObjectBuilder, width: float, height: float) -> None:
         slab(w + 0.02, (-0.03, 0.1), (0.88, 0.92)),
         look="white steel",
     )
-    b.cut(
-        "cabinet",
-        slab(w - 0.03, (-1, 0.6), (0.1, 0.8)),
-        slab(w - 0.06, (0.1, 0.7), (1.7, height - 0.05)),
-    )
+    b.cut("cabinet", slab(w - 0.03, (-1, 0.6), (0.1, 0.8)), slab(w - 0.06, (0.1, 0.7), (1.7, height - 0.05)))
     b.part(
         "sash", slab(w - 0.055, (0.02, 0.035), (0.95, 1.6)), slab(w - 0.055, (0.005, 0.04), (0.95, 0.99)), look="glass"
     )
@@ -147,35 +131,35 @@ def autoclave(b: ObjectBuilder, radius: float, length: float) -> None:
 
 @kind(words="rotavap", size=(0.9, 1.1))
 def rotary_evaporator(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        box(p(-0.2, -0.15, 0), p(0.2, 0.15, 0.04)),
-        box(p(0.1, -0.05, 0.03), p(0.18, 0.05, 0.5)),
-        b.cylinder(0.1 * size, p(-0.08, 0, 0.03), p(-0.08, 0, 0.15)),
+        p.slab(0.2, 0.15, (0, 0.04)),
+        p.slab((0.1, 0.18), 0.05, (0.03, 0.5)),
+        p.cylinder(0.1, (-0.08, 0, 0.03), (-0.08, 0, 0.15)),
         look="white metal",
     )
-    b.cut("base", b.cylinder(0.094 * size, p(-0.08, 0, 0.045), p(-0.08, 0, 0.3)))
+    b.cut("base", p.cylinder(0.094, (-0.08, 0, 0.045), (-0.08, 0, 0.3)))
     b.part(
         "lift",
-        box(p(0.075, -0.055, 0.35), p(0.098, 0.055, 0.45)),
-        [box(p(0.06, s * 0.055, 0.35), p(0.18, s * 0.051, 0.45)) for s in (-1, 1)],
-        [box(p(0.03, s * 0.035, 0.37), p(0.078, s * 0.027, 0.44)) for s in (-1, 1)],
+        p.slab((0.075, 0.098), 0.055, (0.35, 0.45)),
+        [p.box((0.06, s * 0.055, 0.35), (0.18, s * 0.051, 0.45)) for s in (-1, 1)],
+        [p.box((0.03, s * 0.035, 0.37), (0.078, s * 0.027, 0.44)) for s in (-1, 1)],
         look="grey metal",
     )
     b.slide("lift", "base", Z, 0.04, lower=-0.01)
     b.part(
         "arm",
-        beam(0.04 * size, 0.05 * size, p(0.045, 0, 0.405), p(-0.02, 0, 0.38), Y),
-        b.cylinder(0.014 * size, p(-0.02, 0, 0.4), p(-0.02, 0, 0.55)),
+        p.beam(0.04, 0.05, (0.045, 0, 0.405), (-0.02, 0, 0.38), Y),
+        p.cylinder(0.014, (-0.02, 0, 0.4), (-0.02, 0, 0.55)),
         look="white",
     )
-    b.cut("arm", b.cylinder(0.013 * size, p(-0.035, 0, 0.33), p(0, 0, 0.41)))
+    b.cut("arm", p.cylinder(0.013, (-0.035, 0, 0.33), (0, 0, 0.41)))
     b.hinge("arm", "lift", Y, p(0.045, 0, 0.405), 0.2, lower=-0.2)
     b.part(
         "flask",
-        b.cylinder(0.011 * size, p(-0.012, 0, 0.385), p(-0.06, 0, 0.285)),
-        ball(0.055 * size, p(-0.08, 0, 0.245)),
+        p.cylinder(0.011, (-0.012, 0, 0.385), (-0.06, 0, 0.285)),
+        p.ball(0.055, (-0.08, 0, 0.245)),
         look="glass",
     )
     b.spin("flask", "arm", vector(-0.43, 0, -0.9), p(-0.012, 0, 0.385))
@@ -197,25 +181,25 @@ def hot_plate_stirrer(b: ObjectBuilder, width: float) -> None:
 
 @kind(words="laboratory balance, precision scale, draft shield balance", size=(0.9, 1.1))
 def analytical_balance(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        box(p(-0.11, -0.17, 0), p(0.11, 0.15, 0.06)),
-        box(p(-0.11, 0.13, 0.06), p(0.11, 0.15, 0.32)),
-        box(p(-0.11, -0.07, 0.31), p(0.11, 0.15, 0.32)),
-        box(p(-0.11, -0.07, 0.06), p(0.11, -0.066, 0.32)),
+        p.slab(0.11, (-0.17, 0.15), (0, 0.06)),
+        p.slab(0.11, (0.13, 0.15), (0.06, 0.32)),
+        p.slab(0.11, (-0.07, 0.15), (0.31, 0.32)),
+        p.slab(0.11, (-0.07, -0.066), (0.06, 0.32)),
         look="white",
     )
-    b.bore("base", b.cylinder(0.007 * size, p(0, 0.03, 0.03), p(0, 0.03, 0.1)))
+    b.bore("base", p.cylinder(0.007, (0, 0.03, 0.03), (0, 0.03, 0.1)))
     b.part(
         "pan",
-        b.cylinder(0.005 * size, p(0, 0.03, 0.04), p(0, 0.03, 0.07)),
-        b.cylinder(0.045 * size, p(0, 0.03, 0.068), p(0, 0.03, 0.073)),
+        p.cylinder(0.005, (0, 0.03, 0.04), (0, 0.03, 0.07)),
+        p.cylinder(0.045, (0, 0.03, 0.068), (0, 0.03, 0.073)),
         look="steel",
     )
     b.slide("pan", "base", -Z, 0.004)
     for k, s in enumerate((-1, 1)):
-        b.part(f"door_{k}", box(p(s * 0.104, -0.064, 0.062), p(s * 0.108, 0.128, 0.308)), look="glass")
+        b.part(f"door_{k}", p.box((s * 0.104, -0.064, 0.062), (s * 0.108, 0.128, 0.308)), look="glass")
         b.hinge(f"door_{k}", "base", s * Z, p(s * 0.108, 0.128, 0), 1.3)
 
 
@@ -339,32 +323,32 @@ def optical_bench(b: ObjectBuilder, number: int, length: float) -> None:
 
 @kind(size=(0.9, 1.2))
 def bunsen_burner(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        b.cone(0.045 * size, 0.03 * size, p(0, 0, 0), p(0, 0, 0.02)),
-        b.cylinder(0.007 * size, p(0, 0, 0.018), p(0, 0, 0.15)),
-        b.cylinder(0.005 * size, p(0, 0, 0.03), p(0.06, 0, 0.03)),
+        p.cone(0.045, 0.03, 0, 0.02),
+        p.cylinder(0.007, 0.018, 0.15),
+        p.cylinder(0.005, (0, 0, 0.03), (0.06, 0, 0.03)),
         look="brass",
     )
-    b.cut("base", b.cylinder(0.0045 * size, p(0, 0, 0.05), p(0, 0, 1)))
-    b.part("collar", b.tube(0.012 * size, 0.0085 * size, p(0, 0, 0.05), p(0, 0, 0.068)), look="brass")
+    b.cut("base", p.cylinder(0.0045, 0.05, 1))
+    b.part("collar", p.tube(0.012, 0.0085, 0.05, 0.068), look="brass")
     b.hinge("collar", "base", Z, p(0, 0, 0), 1.5)
     knob(b, "valve", "base", p(0.045, -0.005, 0.03), 0.007 * size, -Y, high=0.014 * size)
 
 
 @kind(words="infusion pump, dosing pump", size=(0.9, 1.1))
 def syringe_pump(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.14, -0.06, 0), p(0.14, 0.06, 0.09)),
-        [box(p(x - 0.008, -0.045, 0.08), p(x + 0.008, 0.045, 0.125)) for x in (-0.13, 0.13)],
-        [b.cylinder(0.005 * size, p(-0.125, y, 0.11), p(0.125, y, 0.11)) for y in (-0.03, 0.03)],
+        p.slab(0.14, 0.06, (0, 0.09)),
+        [p.slab((x - 0.008, x + 0.008), 0.045, (0.08, 0.125)) for x in (-0.13, 0.13)],
+        [p.cylinder(0.005, (-0.125, y, 0.11), (0.125, y, 0.11)) for y in (-0.03, 0.03)],
         look="white",
     )
-    b.part("carriage", box(p(0.03, -0.045, 0.092), p(0.06, 0.045, 0.15)), look="blue metal")
-    b.cut("carriage", [b.cylinder(0.0065 * size, p(0, y, 0.11), p(0.1, y, 0.11)) for y in (-0.03, 0.03)])
+    b.part("carriage", p.slab((0.03, 0.06), 0.045, (0.092, 0.15)), look="blue metal")
+    b.cut("carriage", [p.cylinder(0.0065, (0, y, 0.11), (0.1, y, 0.11)) for y in (-0.03, 0.03)])
     b.slide("carriage", "body", -X, 0.1, lower=-0.05)
     knob(b, "knob", "body", p(0.1, -0.06, 0.045), 0.016 * size, -Y, high=0.016 * size)
 
@@ -391,34 +375,30 @@ def operating_table(b: ObjectBuilder, height: float) -> None:
 
 @kind(words="operating lamp, ceiling lamp with arms, dental lamp, ceiling mounted lamp", size=(0.8, 1.1))
 def surgical_lamp(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
-        "mount",
-        b.cylinder(0.1 * size, p(0, 0, 2.3), p(0, 0, 2.35)),
-        b.cylinder(0.03 * size, p(0, 0, 2), p(0, 0, 2.31)),
-        b.cylinder(0.045 * size, p(0, 0, 2), p(0, 0, 2.02)),
-        look="white steel",
+        "mount", p.cylinder(0.1, 2.3, 2.35), p.cylinder(0.03, 2, 2.31), p.cylinder(0.045, 2, 2.02), look="white steel"
     )
     b.part(
         "arm",
-        b.tube(0.045 * size, 0.033 * size, p(0, 0, 2.025), p(0, 0, 2.12)),
-        box(p(0.04, -0.025, 2.04), p(0.8, 0.025, 2.1)),
-        b.cylinder(0.03 * size, p(0.8, 0, 2), p(0.8, 0, 2.1)),
+        p.tube(0.045, 0.033, 2.025, 2.12),
+        p.slab((0.04, 0.8), 0.025, (2.04, 2.1)),
+        p.cylinder(0.03, (0.8, 0, 2), (0.8, 0, 2.1)),
         look="white steel",
     )
     b.spin("arm", "mount", Z, p(0, 0, 0))
     b.part(
         "drop",
-        b.cylinder(0.028 * size, p(0.8, 0, 1.9), p(0.8, 0, 1.997)),
-        [beam(0.02 * size, 0.02 * size, p(0.8, s * 0.02, 1.91), p(0.8, s * 0.27, 1.8)) for s in (-1, 1)],
-        [box(p(0.785, s * 0.26, 1.6), p(0.815, s * 0.28, 1.81)) for s in (-1, 1)],
+        p.cylinder(0.028, (0.8, 0, 1.9), (0.8, 0, 1.997)),
+        [p.beam(0.02, 0.02, (0.8, s * 0.02, 1.91), (0.8, s * 0.27, 1.8)) for s in (-1, 1)],
+        [p.box((0.785, s * 0.26, 1.6), (0.815, s * 0.28, 1.81)) for s in (-1, 1)],
         look="white steel",
     )
     b.spin("drop", "arm", Z, p(0.8, 0, 0))
     b.part(
         "head",
-        b.cone(0.25 * size, 0.15 * size, p(0.8, 0, 1.58), p(0.8, 0, 1.68)),
-        [b.cylinder(0.008 * size, p(0.8, s * 0.18, 1.63), p(0.8, s * 0.258, 1.63)) for s in (-1, 1)],
+        p.cone(0.25, 0.15, (0.8, 0, 1.58), (0.8, 0, 1.68)),
+        [p.cylinder(0.008, (0.8, s * 0.18, 1.63), (0.8, s * 0.258, 1.63)) for s in (-1, 1)],
         look="white metal",
     )
     b.hinge("head", "drop", Y, p(0.8, 0, 1.63), 0.7, lower=-0.7)
@@ -470,81 +450,78 @@ def pill_box(b: ObjectBuilder, number: int) -> None:
 
 @kind(words="surgical clamp, artery forceps, needle holder", size=(0.8, 1.3))
 def hemostat(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "arm",
-        beam(0.008 * size, 0.004 * size, p(-0.004, 0.05, 0.002), p(0.02, -0.07, 0.002)),
-        beam(0.008 * size, 0.004 * size, p(-0.004, 0.05, 0.002), p(-0.003, 0.09, 0.002)),
-        b.torus(0.014 * size, 0.003 * size, p(0.03, -0.08, 0.003), Z),
-        b.cylinder(0.0035 * size, p(0, 0.03, 0), p(0, 0.03, 0.0085)),
+        p.beam(0.008, 0.004, (-0.004, 0.05, 0.002), (0.02, -0.07, 0.002)),
+        p.beam(0.008, 0.004, (-0.004, 0.05, 0.002), (-0.003, 0.09, 0.002)),
+        p.torus(0.014, 0.003, (0.03, -0.08, 0.003), Z),
+        p.cylinder(0.0035, (0, 0.03, 0), (0, 0.03, 0.0085)),
         look="steel",
     )
     b.part(
         "other_arm",
-        beam(0.008 * size, 0.004 * size, p(0.004, 0.05, 0.0065), p(-0.02, -0.07, 0.0065)),
-        beam(0.008 * size, 0.004 * size, p(0.004, 0.05, 0.0065), p(0.003, 0.09, 0.0065)),
-        b.torus(0.014 * size, 0.003 * size, p(-0.03, -0.08, 0.0075), Z),
-        b.cylinder(0.006 * size, p(0, 0.03, 0.0045), p(0, 0.03, 0.008)),
+        p.beam(0.008, 0.004, (0.004, 0.05, 0.0065), (-0.02, -0.07, 0.0065)),
+        p.beam(0.008, 0.004, (0.004, 0.05, 0.0065), (0.003, 0.09, 0.0065)),
+        p.torus(0.014, 0.003, (-0.03, -0.08, 0.0075), Z),
+        p.cylinder(0.006, (0, 0.03, 0.0045), (0, 0.03, 0.008)),
         look="steel",
     )
-    b.cut("other_arm", b.cylinder(0.0042 * size, p(0, 0.03, -1), p(0, 0.03, 1)))
+    b.cut("other_arm", p.cylinder(0.0042, (0, 0.03, -1), (0, 0.03, 1)))
     b.hinge("other_arm", "arm", Z, p(0, 0.03, 0), 0.25, lower=-0.02)
 
 
 @kind(walls=50, words="mri scanner, mri machine, tomograph, x ray scanner", size=(0.9, 1.1))
 def ct_scanner(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "gantry",
-        box(p(-1, -0.4, 0), p(1, 0.4, 1.9)),
-        box(p(-0.3, -2.4, 0), p(0.3, -0.5, 0.7)),
-        box(p(-0.35, -0.5, 0), p(0.35, -0.39, 0.3)),
+        p.slab(1, 0.4, (0, 1.9)),
+        p.slab(0.3, (-2.4, -0.5), (0, 0.7)),
+        p.slab(0.35, (-0.5, -0.39), (0, 0.3)),
         look="white",
     )
     b.cut(
         "gantry",
-        b.cylinder(0.38 * size, p(0, -1, 1.05), p(0, 1, 1.05)),
-        box(p(-0.97, -0.37, 0.03), p(-0.45, 0.37, 1.85)),
-        box(p(0.45, -0.37, 0.03), p(0.97, 0.37, 1.85)),
-        box(p(-0.27, -2.35, 0.03), p(0.27, -0.52, 0.65)),
+        p.cylinder(0.38, (0, -1, 1.05), (0, 1, 1.05)),
+        p.slab((-0.97, -0.45), 0.37, (0.03, 1.85)),
+        p.slab((0.45, 0.97), 0.37, (0.03, 1.85)),
+        p.slab(0.27, (-2.35, -0.52), (0.03, 0.65)),
     )
     b.part(
-        "table",
-        box(p(-0.22, -2.4, 0.79), p(0.22, -0.45, 0.84)),
-        box(p(-0.2, -2.4, 0.702), p(0.2, -0.6, 0.8)),
-        look="light blue",
+        "table", p.slab(0.22, (-2.4, -0.45), (0.79, 0.84)), p.slab(0.2, (-2.4, -0.6), (0.702, 0.8)), look="light blue"
     )
     b.slide("table", "gantry", Y, 0.15)
 
 
 @kind(walls=45, words="x ray machine, x-ray machine, mobile x ray", size=(0.9, 1.1))
 def c_arm(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        box(p(0.5, -0.3, 0.12), p(1.1, 0.3, 0.7)),
-        box(p(-0.2, -0.06, 0.12), p(0.5, 0.06, 0.18)),
-        box(p(0.6, -0.1, 0.69), p(0.8, 0.1, 1.2)),
+        p.slab((0.5, 1.1), 0.3, (0.12, 0.7)),
+        p.slab((-0.2, 0.5), 0.06, (0.12, 0.18)),
+        p.slab((0.6, 0.8), 0.1, (0.69, 1.2)),
         look="white",
     )
-    b.cut("base", box(p(0.53, -0.27, 0.15), p(1.07, 0.27, 0.66)))
-    b.bore("base", box(p(0.3, -0.055, 1.045), p(0.9, 0.055, 1.155)))
-    b.part("slide_arm", box(p(0.45, -0.05, 1.05), p(0.78, 0.05, 1.15)), look="steel")
+    b.cut("base", p.slab((0.53, 1.07), 0.27, (0.15, 0.66)))
+    b.bore("base", p.slab((0.3, 0.9), 0.055, (1.045, 1.155)))
+    b.part("slide_arm", p.slab((0.45, 0.78), 0.05, (1.05, 1.15)), look="steel")
     b.slide("slide_arm", "base", -X, 0.12)
     b.part(
         "arc",
         [
-            beam(
-                0.08 * size,
-                0.06 * size,
-                p(-0.15 + 0.55 * cos(a), 0, 1.1 + 0.55 * sin(a)),
-                p(-0.15 + 0.55 * cos(a + 0.45), 0, 1.1 + 0.55 * sin(a + 0.45)),
+            p.beam(
+                0.08,
+                0.06,
+                (-0.15 + 0.55 * cos(a), 0, 1.1 + 0.55 * sin(a)),
+                (-0.15 + 0.55 * cos(a + 0.45), 0, 1.1 + 0.55 * sin(a + 0.45)),
                 Y,
             )
             for a in [-1.575 + 0.45 * k for k in range(7)]
         ],
-        b.cylinder(0.12 * size, p(-0.15, 0, 0.55), p(-0.15, 0, 0.75)),
-        b.cylinder(0.1 * size, p(-0.15, 0, 1.5), p(-0.15, 0, 1.65)),
+        p.cylinder(0.12, (-0.15, 0, 0.55), (-0.15, 0, 0.75)),
+        p.cylinder(0.1, (-0.15, 0, 1.5), (-0.15, 0, 1.65)),
         look="white metal",
     )
     b.hinge("arc", "slide_arm", -X, p(0.45, 0, 1.1), 1.2, lower=-1.2)
@@ -582,28 +559,25 @@ def infant_incubator(b: ObjectBuilder, width: float) -> None:
 
 @kind(words="knee prosthesis, leg prosthesis, artificial leg", size=(0.9, 1.1))
 def prosthetic_leg(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "socket",
-        b.cone(0.06 * size, 0.09 * size, p(0, 0, 0.55), p(0, 0, 0.85)),
-        box(p(-0.035, -0.035, 0.53), p(0.035, 0.035, 0.56)),
-        [box(p(s * 0.028, -0.02, 0.46), p(s * 0.036, 0.02, 0.56)) for s in (-1, 1)],
+        p.cone(0.06, 0.09, 0.55, 0.85),
+        p.slab(0.035, 0.035, (0.53, 0.56)),
+        [p.slab((s * 0.028, s * 0.036), 0.02, (0.46, 0.56)) for s in (-1, 1)],
         look="black",
     )
-    b.cut("socket", b.cone(0.055 * size, 0.085 * size, p(0, 0, 0.57), p(0, 0, 0.8501)))
+    b.cut("socket", p.cone(0.055, 0.085, 0.57, 0.8501))
     b.part(
         "shin",
-        box(p(-0.026, -0.018, 0.47), p(0.026, 0.018, 0.505)),
-        b.cylinder(0.016 * size, p(0, 0, 0.12), p(0, 0, 0.48)),
-        [box(p(s * 0.018, -0.015, 0.08), p(s * 0.025, 0.015, 0.125)) for s in (-1, 1)],
-        box(p(-0.025, -0.015, 0.112), p(0.025, 0.015, 0.13)),
+        p.slab(0.026, 0.018, (0.47, 0.505)),
+        p.cylinder(0.016, 0.12, 0.48),
+        [p.slab((s * 0.018, s * 0.025), 0.015, (0.08, 0.125)) for s in (-1, 1)],
+        p.slab(0.025, 0.015, (0.112, 0.13)),
         look="metal",
     )
     b.hinge("shin", "socket", X, p(0, 0, 0.487), 0.5, lower=0)
     b.part(
-        "foot",
-        box(p(-0.016, -0.012, 0.055), p(0.016, 0.012, 0.105)),
-        box(p(-0.035, -0.17, 0.02), p(0.035, 0.06, 0.06)),
-        look="brown rubber",
+        "foot", p.slab(0.016, 0.012, (0.055, 0.105)), p.slab(0.035, (-0.17, 0.06), (0.02, 0.06)), look="brown rubber"
     )
     b.hinge("foot", "shin", X, p(0, 0, 0.095), 0.2, lower=-0.2)

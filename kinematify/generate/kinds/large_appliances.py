@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import hypot, pi
-from typing import TYPE_CHECKING
+from typing import Any
+
+from manifold3d import Manifold
 
 from kinematify.generate.library import mechanisms
 from kinematify.generate.library.builder import drawn_on
@@ -13,17 +16,8 @@ from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
-from kinematify.generate.procedural.solids import X, Y, box, cylinder, slab, tray, union
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.pieces.fronts import Bay
-    from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.procedural.solids import Point, X, Y, box, cylinder, slab, tray, union
+from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
@@ -56,10 +50,8 @@ def oven(
     clearance: float,
 ) -> None:
     """Ovens and stoves: a door that falls open, and knobs above it."""
-    # plinth: below the door, so that its handle does not reach the floor [m]
-    # wall: of a dishwasher, too [m]
-    plinth = 0.1
-    wall = 0.04
+    plinth = 0.1  # below the door, so that its handle does not reach the floor [m]
+    wall = 0.04  # of a dishwasher, too [m]
 
     # A grate of bars from wall to wall in the middle of the room.
     def grate(opening: Bay) -> Sequence[Manifold]:
@@ -139,14 +131,13 @@ def microwave(
     clearance: float,
 ) -> None:
     """Microwave ovens: a door at the left, a control panel at the right, and a turntable inside."""
-    # the_panel: share of the width that the control panel takes
-    the_panel = 0.26
+    the_panel = 0.26  # share of the width that the control panel takes
     wall = 0.03
     border = (0.5 - the_panel) * width
     behind = depth - wall - clearance
     opening = Bay(left=-0.5 * width, right=border, bottom=0.0, top=height, depth=behind, wall=wall)
-    its_panel = box((border + 0.002, -wall - clearance, 0), (0.5 * width, 0.001, height))
-    w.body("body", carcass(width, height, behind, [opening]), its_panel)
+    panel = box((border + 0.002, -wall - clearance, 0), (0.5 * width, 0.001, height))
+    w.body("body", carcass(width, height, behind, [opening]), panel)
     fitting = Fitting(clearance=clearance, grip=handle, rest=open)
     add_door(w, "door", "body", opening, fitting, side="left", hinge=hinge)
     margin = 0.15 * opening.width
@@ -219,12 +210,9 @@ def dishwasher(
     clearance: float,
 ) -> None:
     """Dishwashers: a door that falls open, racks on rails and a spray arm inside."""
-    # plinth: below the door, so that its handle does not reach the floor [m]
-    # the_wall: of a dishwasher, too [m]
-    # arm: height that the spray arm needs above the floor of the room [m]
-    plinth = 0.1
-    the_wall = 0.04
-    arm = 0.07
+    plinth = 0.1  # below the door, so that its handle does not reach the floor [m]
+    the_wall = 0.04  # of a dishwasher, too [m]
+    arm = 0.07  # height that the spray arm needs above the floor of the room [m]
     rail = 0.012
 
     # A tray whose floor has slots.
@@ -319,14 +307,10 @@ def fridge(
     clearance: float,
 ) -> None:
     """Refrigerators: thick doors with bins inside, one above the other or side by side."""
-    # wall: a door's thickness; walls of the body are half as thick, between two rooms as thick [m]
-    # the_pitch: between shelves [m]
-    # bin: depth of a bin [m]
-    # the_inset: of a bin from the room's sides, so that it swings out of the room [m]
-    wall = 0.05
-    the_pitch = 0.3
-    bin = 0.07
-    the_inset = 0.06
+    wall = 0.05  # a door's thickness; walls of the body are half as thick, between two rooms as thick [m]
+    the_pitch = 0.3  # between shelves [m]
+    bin = 0.07  # depth of a bin [m]
+    the_inset = 0.06  # of a bin from the room's sides, so that it swings out of the room [m]
 
     # Left, right, bottom and top of each door as shares of the front.
     def fields_of_(doors: int, freezer: str) -> Sequence[tuple[float, float, float, float]]:
@@ -417,13 +401,10 @@ def washing_machine(
     clearance: float,
 ) -> None:
     """Washing machines and dryers: a round door, a drum behind it, a detergent drawer, a knob and buttons."""
-    # strip: height of the strip with the controls [m]
-    # hinge: radius and length of the door's hinge [m]
-    # door: thickness [m]
-    strip = 0.14
+    strip = 0.14  # height of the strip with the controls [m]
     wall = 0.03
-    hinge = (0.006, 0.09)
-    door = 0.03
+    hinge = (0.006, 0.09)  # radius and length of the door's hinge [m]
+    door = 0.03  # thickness [m]
     front = slab(0.5 * width, (0, depth), (0, height))
     tub = 0.5 * min(width, height - strip) - wall
     centre = (0.0, 0.5 * (height - strip))

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import button, case, crank, knob, wheel
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(words="wooden train, toy locomotive", length=(0.12, 0.3), width=(0.04, 0.08), radius=(0.012, 0.025))
@@ -390,8 +386,7 @@ def garage_door(b: ObjectBuilder, width: float, height: float, lift: bool) -> No
     b.part("panel", slab(width / 2 - (g if not lift else -0.05), (y, y + 0.05), (0.01, height - g)), look="steel")
     for z in spread(b.count(3, 5), 0.1, height - 0.1):
         b.part(
-            "panel",
-            slab(0.45 * width, (y - (0 if lift else 0.015), y + (0.065 if lift else 0)), (z - 0.08, z + 0.08)),
+            "panel", slab(0.45 * width, (y - (0 if lift else 0.015), y + (0.065 if lift else 0)), (z - 0.08, z + 0.08))
         )
     if lift:
         b.slide("panel", "frame", Z, height)

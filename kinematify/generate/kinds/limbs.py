@@ -5,22 +5,19 @@ Jaws on a rail and fingers on pins around a palm stand on z = 0 of a frame and r
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, pi, radians, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
 from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
-from kinematify.generate.procedural.solids import X, Z, box, cylinder, hull, off, rod, slab, union, vector
+from kinematify.generate.procedural.solids import Point, X, Z, box, cylinder, hull, off, rod, slab, union, vector
+from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
 
 # ---- parallel jaws on a rail, and fingers on pins around a palm; both stand on z = 0 of a frame and reach up
@@ -48,10 +45,7 @@ def finger_ring(fingers: int) -> float:
 
 def finger_palm(fingers: int) -> list[Manifold]:
     """Return a round palm with room for fingers around it."""
-    return [
-        cylinder(finger_ring(fingers) + _FINGER_HALF, 0.02, _KNUCKLE - 2 * _FINGER_HALF),
-        cylinder(0.025, 0, 0.021),
-    ]
+    return [cylinder(finger_ring(fingers) + _FINGER_HALF, 0.02, _KNUCKLE - 2 * _FINGER_HALF), cylinder(0.025, 0, 0.021)]
 
 
 def jaws(

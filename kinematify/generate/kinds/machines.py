@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import arm, button, case, caster, knob, lever, plunger
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
-
-if TYPE_CHECKING:
-    from manifold3d import Manifold
-
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
@@ -110,12 +105,13 @@ def press(b: ObjectBuilder, height: float) -> None:
 )
 def gate_valve(b: ObjectBuilder, radius: float, number: int) -> None:
     """A handwheel above a body between flanges."""
+    p = b.sized(radius)
     b.part(
         "body",
-        b.tube(radius, 0.7 * radius, (-3 * radius, 0, 0), (3 * radius, 0, 0)),
-        [b.tube(1.7 * radius, 0.7 * radius, (s * 3 * radius, 0, 0), (s * 2.6 * radius, 0, 0)) for s in (-1, 1)],
-        ball(1.3 * radius, (0, 0, 0)),
-        b.cone(0.9 * radius, 0.5 * radius, radius, 3 * radius),
+        p.tube(1, 0.7, (-3, 0, 0), (3, 0, 0)),
+        [p.tube(1.7, 0.7, (s * 3, 0, 0), (s * 2.6, 0, 0)) for s in (-1, 1)],
+        p.ball(1.3, (0, 0, 0)),
+        p.cone(0.9, 0.5, 1, 3),
         look="steel",
     )
     g = b.gap(radius)
@@ -441,12 +437,13 @@ def gear_train(b: ObjectBuilder, number: int, radius: float) -> None:
 @kind(words="hasp, hasp and staple, latch, gate latch, door latch", size=(0.02, 0.06), hook=yes(0.5))
 def hasp_latch(b: ObjectBuilder, size: float, hook: bool) -> None:
     """A toggle or hook that turns on a plate."""
+    p = b.sized(size)
     b.part(
         "plate",
-        slab(size, (0, 0.15 * size), size),
-        slab((2.5 * size, 3.5 * size), (0, 0.15 * size), size),
-        slab((-size, 3.5 * size), (0.1 * size, 0.3 * size), 0.4 * size),
-        b.cylinder(0.2 * size, (3 * size, 0.1 * size, 0), (3 * size, -0.8 * size, 0)),
+        p.slab(1, (0, 0.15), 1),
+        p.slab((2.5, 3.5), (0, 0.15), 1),
+        p.slab((-1, 3.5), (0.1, 0.3), 0.4),
+        p.cylinder(0.2, (3, 0.1, 0), (3, -0.8, 0)),
         look="steel",
     )
     g = b.gap(0.1 * size)

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, button, knob
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 
 @kind(words="mechanical typewriter", number=whole(5, 9, words="key"))
@@ -78,29 +74,18 @@ def cash_register(b: ObjectBuilder, width: float) -> None:
 
 @kind(words="telephone, rotary telephone, dial telephone, landline phone, old phone", size=(0.9, 1.1))
 def rotary_phone(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        prism(
-            [
-                (-0.1 * size, 0),
-                (0.1 * size, 0),
-                (0.08 * size, 0.09 * size),
-                (0.02 * size, 0.1 * size),
-                (-0.1 * size, 0.03 * size),
-            ],
-            (0, 0, 0),
-            0.18 * size,
-            "x",
-        ),
-        [box(p(s * 0.05 - 0.008, 0.02, 0.09), p(s * 0.05 + 0.008, 0.08, 0.115)) for s in (-1, 1)],
+        p.prism([(-0.1, 0), (0.1, 0), (0.08, 0.09), (0.02, 0.1), (-0.1, 0.03)], (0, 0, 0), 0.18, "x"),
+        [p.box((s * 0.05 - 0.008, 0.02, 0.09), (s * 0.05 + 0.008, 0.08, 0.115)) for s in (-1, 1)],
         look="black",
     )
-    b.cut("body", [b.cylinder(0.0125 * size, p(s * 0.03, 0.05, 0.115), p(s * 0.07, 0.05, 0.115)) for s in (-1, 1)])
+    b.cut("body", [p.cylinder(0.0125, (s * 0.03, 0.05, 0.115), (s * 0.07, 0.05, 0.115)) for s in (-1, 1)])
     b.part(
         "handset",
-        b.cylinder(0.0115 * size, p(-0.13, 0.05, 0.117), p(0.13, 0.05, 0.117)),
-        [b.cone(0.026 * size, 0.018 * size, p(s * 0.125, 0.05, 0.092), p(s * 0.125, 0.05, 0.125)) for s in (-1, 1)],
+        p.cylinder(0.0115, (-0.13, 0.05, 0.117), (0.13, 0.05, 0.117)),
+        [p.cone(0.026, 0.018, (s * 0.125, 0.05, 0.092), (s * 0.125, 0.05, 0.125)) for s in (-1, 1)],
         look="black",
     )
     b.slide("handset", "body", Z, 0.1)
@@ -158,19 +143,19 @@ def dvd_player(b: ObjectBuilder, width: float) -> None:
 
 @kind(words="gamepad, game pad, controller", size=(0.9, 1.1))
 def game_controller(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.05, -0.03, 0), p(0.05, 0.03, 0.03)),
-        [b.rod(0.022 * size, p(s * 0.055, 0.02, 0.003), p(s * 0.065, -0.06, -0.005)) for s in (-1, 1)],
+        p.slab(0.05, 0.03, (0, 0.03)),
+        [p.rod(0.022, (s * 0.055, 0.02, 0.003), (s * 0.065, -0.06, -0.005)) for s in (-1, 1)],
         look="black",
     )
     for k, x in enumerate((-0.025, 0.025)):
-        b.bore("body", b.cone(0.008 * size, 0.013 * size, p(x, -0.012, 0.018), p(x, -0.012, 0.0301)))
+        b.bore("body", p.cone(0.008, 0.013, (x, -0.012, 0.018), (x, -0.012, 0.0301)))
         b.part(
             f"stick_{k}",
-            b.cylinder(0.004 * size, p(x, -0.012, 0.019), p(x, -0.012, 0.036)),
-            b.cylinder(0.009 * size, p(x, -0.012, 0.035), p(x, -0.012, 0.041)),
+            p.cylinder(0.004, (x, -0.012, 0.019), (x, -0.012, 0.036)),
+            p.cylinder(0.009, (x, -0.012, 0.035), (x, -0.012, 0.041)),
             look="grey rubber",
         )
         b.hinge(f"stick_{k}", "body", X, p(x, -0.012, 0.021), 0.3, lower=-0.3)
@@ -204,19 +189,19 @@ def joystick(b: ObjectBuilder, height: float) -> None:
 
 @kind(words="mouse, gaming mouse", size=(0.9, 1.1))
 def computer_mouse(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.03, -0.015, 0), p(0.03, 0.06, 0.03)),
-        box(p(-0.03, -0.06, 0), p(0.03, -0.01, 0.02)),
-        b.cylinder(0.03 * size, p(0, 0.055, 0), p(0, 0.055, 0.03)),
+        p.slab(0.03, (-0.015, 0.06), (0, 0.03)),
+        p.slab(0.03, (-0.06, -0.01), (0, 0.02)),
+        p.cylinder(0.03, (0, 0.055, 0), (0, 0.055, 0.03)),
         look="black",
     )
-    b.bore("body", box(p(-0.006, -0.052, 0.004), p(0.006, -0.024, 0.1)))
+    b.bore("body", p.slab(0.006, (-0.052, -0.024), (0.004, 0.1)))
     for k, (a, b_) in enumerate(((-0.029, -0.0065), (0.0065, 0.029))):
-        b.part(f"button_{k}", box(p(a, -0.06, 0.023), p(b_, -0.017, 0.028)), look="grey")
+        b.part(f"button_{k}", p.box((a, -0.06, 0.023), (b_, -0.017, 0.028)), look="grey")
         b.hinge(f"button_{k}", "body", X, p(0, -0.017, 0.028), 0.05)
-    b.part("wheel", b.cylinder(0.012 * size, p(-0.0035, -0.038, 0.019), p(0.0035, -0.038, 0.019)), look="rubber")
+    b.part("wheel", p.cylinder(0.012, (-0.0035, -0.038, 0.019), (0.0035, -0.038, 0.019)), look="rubber")
     b.spin("wheel", "body", X, p(0, -0.038, 0.019))
 
 
@@ -332,33 +317,29 @@ def flip_chart(b: ObjectBuilder, width: float, height: float) -> None:
 
 @kind(words="date block, perpetual calendar", size=(0.9, 1.2))
 def desk_calendar(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
-        box(p(-0.1, -0.05, 0), p(0.1, 0.05, 0.015)),
-        [box(p(x - 0.004, -0.04, 0.01), p(x + 0.004, 0.04, 0.1)) for x in (-0.09, 0.09)],
+        p.slab(0.1, 0.05, (0, 0.015)),
+        [p.slab((x - 0.004, x + 0.004), 0.04, (0.01, 0.1)) for x in (-0.09, 0.09)],
         look="wood",
     )
-    b.bore("frame", b.cylinder(0.006 * size, p(-0.12, 0, 0.06), p(0.12, 0, 0.06)))
+    b.bore("frame", p.cylinder(0.006, (-0.12, 0, 0.06), (0.12, 0, 0.06)))
     for k, (a, b_) in enumerate(((-0.083, -0.032), (-0.028, 0.028), (0.032, 0.083))):
-        b.part(f"drum_{k}", b.cylinder(0.035 * size, p(a, 0, 0.06), p(b_, 0, 0.06)), look="white")
-        b.cut(f"drum_{k}", b.cylinder(0.006 * size, p(-0.12, 0, 0.06), p(0.12, 0, 0.06)))
+        b.part(f"drum_{k}", p.cylinder(0.035, (a, 0, 0.06), (b_, 0, 0.06)), look="white")
+        b.cut(f"drum_{k}", p.cylinder(0.006, (-0.12, 0, 0.06), (0.12, 0, 0.06)))
         b.spin(f"drum_{k}", "frame", X, p(0, 0, 0.06))
     b.part(
         "frame",
-        b.cylinder(0.0045 * size, p(-0.094, 0, 0.06), p(0.094, 0, 0.06)),
-        [box(p(s * 0.094, -0.012, 0.048), p(s * 0.098, 0.012, 0.072)) for s in (-1, 1)],
+        p.cylinder(0.0045, (-0.094, 0, 0.06), (0.094, 0, 0.06)),
+        [p.slab((s * 0.094, s * 0.098), 0.012, (0.048, 0.072)) for s in (-1, 1)],
     )
 
 
 @kind(words="self inking stamp, stamp, date stamp", width=(0.04, 0.07))
 def rubber_stamp(b: ObjectBuilder, width: float) -> None:
     b.part("base", slab(width / 2, 0.02, (0, 0.05)), look="black")
-    b.cut(
-        "base",
-        slab(width / 2 - 0.004, 0.016, (-1, 0.04)),
-        slab(width / 2 - 0.008, 0.012, (0, 1)),
-    )
+    b.cut("base", slab(width / 2 - 0.004, 0.016, (-1, 0.04)), slab(width / 2 - 0.008, 0.012, (0, 1)))
     b.part(
         "handle",
         slab(width / 2 - 0.009, 0.011, (0.02, 0.085)),
@@ -459,25 +440,25 @@ def floor_lamp(b: ObjectBuilder, height: float) -> None:
 
 @kind(words="clamp lamp, clip on lamp", size=(0.9, 1.2))
 def clip_lamp(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.015, -0.08, 0), p(0.015, 0.03, 0.012)),
-        b.cylinder(0.006 * size, p(0, 0, 0.01), p(0, 0, 0.125)),
-        [box(p(s * 0.008, -0.008, 0.12), p(s * 0.013, 0.008, 0.16)) for s in (-1, 1)],
-        box(p(-0.013, -0.008, 0.118), p(0.013, 0.008, 0.13)),
-        [box(p(s * 0.008, -0.01, -0.025), p(s * 0.014, 0.01, 0.002)) for s in (-1, 1)],
+        p.slab(0.015, (-0.08, 0.03), (0, 0.012)),
+        p.cylinder(0.006, 0.01, 0.125),
+        [p.slab((s * 0.008, s * 0.013), 0.008, (0.12, 0.16)) for s in (-1, 1)],
+        p.slab(0.013, 0.008, (0.118, 0.13)),
+        [p.slab((s * 0.008, s * 0.014), 0.01, (-0.025, 0.002)) for s in (-1, 1)],
         look="black",
     )
-    b.part("clip", box(p(-0.007, -0.08, -0.022), p(0.007, 0.04, -0.012)), look="black")
+    b.part("clip", p.slab(0.007, (-0.08, 0.04), (-0.022, -0.012)), look="black")
     b.hinge("clip", "body", X, p(0, 0, -0.017), 0.25)
     b.part(
         "head",
-        b.cone(0.045 * size, 0.02 * size, p(0, -0.09, 0.15), p(0, -0.03, 0.15)),
-        beam(0.012 * size, 0.012 * size, p(0, -0.035, 0.15), p(0, 0.004, 0.15)),
+        p.cone(0.045, 0.02, (0, -0.09, 0.15), (0, -0.03, 0.15)),
+        p.beam(0.012, 0.012, (0, -0.035, 0.15), (0, 0.004, 0.15)),
         look="black metal",
     )
-    b.cut("head", b.cone(0.042 * size, 0.017 * size, p(0, -0.095, 0.15), p(0, -0.04, 0.15)))
+    b.cut("head", p.cone(0.042, 0.017, (0, -0.095, 0.15), (0, -0.04, 0.15)))
     b.hinge("head", "body", X, p(0, 0, 0.15), 0.6, lower=-0.6)
 
 
@@ -572,41 +553,38 @@ def binding_machine(b: ObjectBuilder, width: float) -> None:
 
 @kind(words="welding helmet, motorcycle helmet, helmet with visor, knight helmet, face shield", size=(0.9, 1.1))
 def visor_helmet(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part("shell", ball(0.13 * size, p(0, 0, 0.13)), look="black")
+    p = b.sized(size)
+    b.part("shell", p.ball(0.13, (0, 0, 0.13)), look="black")
     b.cut(
-        "shell",
-        ball(0.118 * size, p(0, 0, 0.13)),
-        box(p(-0.2, -0.2, -0.1), p(0.2, 0.2, 0.06)),
-        box(p(-0.09, -0.2, 0.06), p(0.09, -0.04, 0.15)),
+        "shell", p.ball(0.118, (0, 0, 0.13)), p.slab(0.2, 0.2, (-0.1, 0.06)), p.slab(0.09, (-0.2, -0.04), (0.06, 0.15))
     )
-    b.part("visor", ball(0.139 * size, p(0, 0, 0.13)), look="glass")
+    b.part("visor", p.ball(0.139, (0, 0, 0.13)), look="glass")
     b.cut(
         "visor",
-        ball(0.132 * size, p(0, 0, 0.13)),
-        box(p(-0.2, -0.2, -0.1), p(0.2, 0.2, 0.07)),
-        box(p(-0.2, -0.2, 0.155), p(0.2, 0.2, 0.4)),
-        box(p(-0.2, 0.012, -0.1), p(0.2, 0.2, 0.4)),
+        p.ball(0.132, (0, 0, 0.13)),
+        p.slab(0.2, 0.2, (-0.1, 0.07)),
+        p.slab(0.2, 0.2, (0.155, 0.4)),
+        p.slab(0.2, (0.012, 0.2), (-0.1, 0.4)),
     )
     b.hinge("visor", "shell", -X, p(0, 0, 0.13), 1.0)
 
 
 @kind(words="phone stand, phone holder, book holder, cookbook stand, tablet holder", size=(0.9, 1.3))
 def tablet_stand(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        box(p(-0.06, -0.06, 0), p(0.06, 0.06, 0.01)),
-        [box(p(s * 0.018, 0.02, 0.008), p(s * 0.025, 0.05, 0.05)) for s in (-1, 1)],
+        p.slab(0.06, 0.06, (0, 0.01)),
+        [p.box((s * 0.018, 0.02, 0.008), (s * 0.025, 0.05, 0.05)) for s in (-1, 1)],
         look="metal",
     )
-    b.part("arm", beam(0.03 * size, 0.01 * size, p(0, 0.035, 0.035), p(0, 0, 0.14)), look="metal")
+    b.part("arm", p.beam(0.03, 0.01, (0, 0.035, 0.035), (0, 0, 0.14)), look="metal")
     b.hinge("arm", "base", X, p(0, 0.035, 0.035), 0.5, lower=-0.4)
     b.part(
         "back",
-        box(p(-0.07, -0.015, 0.1), p(0.07, -0.009, 0.22)),
-        box(p(-0.07, -0.035, 0.1), p(0.07, -0.009, 0.106)),
-        [box(p(s * 0.017, -0.01, 0.125), p(s * 0.022, 0.008, 0.15)) for s in (-1, 1)],
+        p.slab(0.07, (-0.015, -0.009), (0.1, 0.22)),
+        p.slab(0.07, (-0.035, -0.009), (0.1, 0.106)),
+        [p.box((s * 0.017, -0.01, 0.125), (s * 0.022, 0.008, 0.15)) for s in (-1, 1)],
         look="metal",
     )
     b.hinge("back", "arm", X, p(0, 0, 0.14), 0.25, lower=-0.4)
@@ -631,18 +609,15 @@ def intercom(b: ObjectBuilder, number: int) -> None:
 
 @kind(words="flash drive, thumb drive, memory stick", size=(0.9, 1.2))
 def usb_stick(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
-        "stick",
-        box(p(-0.01, -0.02, 0), p(0.01, 0.025, 0.007)),
-        box(p(-0.006, -0.036, 0.001), p(0.006, -0.02, 0.006)),
-        look="black",
+        "stick", p.slab(0.01, (-0.02, 0.025), (0, 0.007)), p.slab(0.006, (-0.036, -0.02), (0.001, 0.006)), look="black"
     )
     b.part(
         "cover",
-        box(p(-0.0105, -0.038, 0.008), p(0.0105, 0.03, 0.0095)),
-        box(p(-0.0105, -0.038, -0.0025), p(0.0105, 0.03, -0.001)),
-        box(p(-0.0105, -0.0395, -0.0025), p(0.0105, -0.038, 0.0095)),
+        p.slab(0.0105, (-0.038, 0.03), (0.008, 0.0095)),
+        p.slab(0.0105, (-0.038, 0.03), (-0.0025, -0.001)),
+        p.slab(0.0105, (-0.0395, -0.038), (-0.0025, 0.0095)),
         look="steel",
     )
     b.spin("cover", "stick", Z, p(0, 0.018, 0))

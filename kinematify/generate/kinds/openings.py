@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import kind, yes
 from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, box, slab
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 def surround(d: ObjectBuilder, name: str, wide: float, low: float, high: float, front: float, *, sill: bool) -> None:

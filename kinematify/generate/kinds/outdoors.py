@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled, slab, tray
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, box, slab, tray
 
 
 @kind(
@@ -57,33 +53,33 @@ def swing_seat(b: ObjectBuilder, width: float) -> None:
     size=(0.8, 1.5),
 )
 def pull_along_duck(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.08, -0.03, 0.03), p(0.07, 0.03, 0.1)),
-        b.cylinder(0.03 * size, p(0.06, -0.028, 0.075), p(0.06, 0.028, 0.075)),
-        box(p(0.03, -0.02, 0.09), p(0.06, 0.02, 0.13)),
-        beam(0.04 * size, 0.05 * size, p(-0.07, 0, 0.09), p(-0.11, 0, 0.12), Y),
+        p.slab((-0.08, 0.07), 0.03, (0.03, 0.1)),
+        p.cylinder(0.03, (0.06, -0.028, 0.075), (0.06, 0.028, 0.075)),
+        p.slab((0.03, 0.06), 0.02, (0.09, 0.13)),
+        p.beam(0.04, 0.05, (-0.07, 0, 0.09), (-0.11, 0, 0.12), Y),
         look="yellow wood",
     )
     b.part(
         "head",
-        b.cylinder(0.03 * size, p(0.05, -0.02, 0.165), p(0.05, 0.02, 0.165)),
-        b.cone(0.014 * size, 0.004 * size, p(0.075, 0, 0.16), p(0.11, 0, 0.158)),
+        p.cylinder(0.03, (0.05, -0.02, 0.165), (0.05, 0.02, 0.165)),
+        p.cone(0.014, 0.004, (0.075, 0, 0.16), (0.11, 0, 0.158)),
         look="yellow wood",
     )
     b.hinge("head", "body", Y, p(0.045, 0, 0.135), 0.25, lower=-0.1)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"wing_{k + 1}",
-            box(p(-0.06, min(s * 0.031, s * 0.037), 0.05), p(0.02, max(s * 0.031, s * 0.037), 0.095)),
+            p.box((-0.06, min(s * 0.031, s * 0.037), 0.05), (0.02, max(s * 0.031, s * 0.037), 0.095)),
             look="orange wood",
         )
         b.hinge(f"wing_{k + 1}", "body", s * X, p(0, s * 0.034, 0.095), 1.2)
         for j, x in enumerate((-0.05, 0.045)):
             b.part(
                 f"wheel_{2 * k + j + 1}",
-                b.cylinder(0.025 * size, p(x, s * 0.034, 0.025), p(x, s * 0.046, 0.025)),
+                p.cylinder(0.025, (x, s * 0.034, 0.025), (x, s * 0.046, 0.025)),
                 look="red wood",
             )
             b.spin(f"wheel_{2 * k + j + 1}", "body", Y, p(x, 0, 0.025))
@@ -133,42 +129,42 @@ def dumbwaiter(b: ObjectBuilder, height: float) -> None:
     size=(0.8, 1.2),
 )
 def cherry_picker(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "chassis",
-        box(p(-1.2, -0.55, 0.35), p(1.2, 0.55, 0.7)),
-        b.cylinder(0.3 * size, p(-0.6, 0, 0.69), p(-0.6, 0, 0.78)),
+        p.slab(1.2, 0.55, (0.35, 0.7)),
+        p.cylinder(0.3, (-0.6, 0, 0.69), (-0.6, 0, 0.78)),
         look="yellow steel",
     )
     for k, s in enumerate((-1, 1)):
         for j, x in enumerate((-0.8, 0.8)):
             b.part(
                 f"wheel_{2 * k + j + 1}",
-                b.cylinder(0.32 * size, p(x, s * 0.551, 0.32), p(x, s * 0.78, 0.32)),
+                p.cylinder(0.32, (x, s * 0.551, 0.32), (x, s * 0.78, 0.32)),
                 look="black rubber",
             )
             b.spin(f"wheel_{2 * k + j + 1}", "chassis", Y, p(x, 0, 0.32))
     b.part(
         "turntable",
-        b.cylinder(0.35 * size, p(-0.6, 0, 0.79), p(-0.6, 0, 0.88)),
-        [box(p(-0.75, s * 0.2 - 0.03, 0.87), p(-0.45, s * 0.2 + 0.03, 1.25)) for s in (-1, 1)],
+        p.cylinder(0.35, (-0.6, 0, 0.79), (-0.6, 0, 0.88)),
+        [p.box((-0.75, s * 0.2 - 0.03, 0.87), (-0.45, s * 0.2 + 0.03, 1.25)) for s in (-1, 1)],
         look="grey steel",
     )
     b.spin("turntable", "chassis", Z, p(-0.6, 0, 0))
-    b.part("lower_boom", beam(0.2 * size, 0.2 * size, p(-0.6, 0, 1.15), p(1.0, 0, 1.75), Y), look="yellow steel")
+    b.part("lower_boom", p.beam(0.2, 0.2, (-0.6, 0, 1.15), (1.0, 0, 1.75), Y), look="yellow steel")
     b.hinge("lower_boom", "turntable", -Y, p(-0.6, 0, 1.15), 0.9, lower=-0.2)
     b.part(
         "upper_boom",
-        beam(0.14 * size, 0.12 * size, p(1.0, 0.19, 1.75), p(-0.9, 0.19, 2.2), Y),
-        b.cylinder(0.05 * size, p(0.98, 0.1, 1.745), p(0.98, 0.15, 1.745)),
+        p.beam(0.14, 0.12, (1.0, 0.19, 1.75), (-0.9, 0.19, 2.2), Y),
+        p.cylinder(0.05, (0.98, 0.1, 1.745), (0.98, 0.15, 1.745)),
         look="yellow steel",
     )
     b.hinge("upper_boom", "lower_boom", Y, p(1.0, 0.19, 1.75), 2.0, lower=-0.15)
     b.part(
         "basket",
         tray(p(-1.58, -0.1, 1.75), p(-1.0, 0.7, 2.4), 0.03 * size),
-        b.cylinder(0.04 * size, p(-0.9, 0.251, 2.2), p(-0.9, 0.32, 2.2)),
-        box(p(-1.01, 0.28, 2.17), p(-0.88, 0.32, 2.23)),
+        p.cylinder(0.04, (-0.9, 0.251, 2.2), (-0.9, 0.32, 2.2)),
+        p.box((-1.01, 0.28, 2.17), (-0.88, 0.32, 2.23)),
         look="grey steel",
     )
     b.hinge("basket", "upper_boom", -Y, p(-0.9, 0.25, 2.2), 1.0, lower=-1.0)
@@ -176,24 +172,19 @@ def cherry_picker(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="ship's capstan, anchor capstan", part_words={"drum": "barrel, head", "bar": "lever"}, size=(0.7, 1.3))
 def capstan(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "base",
-        b.cylinder(0.4 * size, p(0, 0, 0), p(0, 0, 0.1)),
-        b.cylinder(0.06 * size, p(0, 0, 0.09), p(0, 0, 0.9)),
-        look="wood",
-    )
+    p = b.sized(size)
+    b.part("base", p.cylinder(0.4, 0, 0.1), p.cylinder(0.06, 0.09, 0.9), look="wood")
     b.part(
         "drum",
-        b.cylinder(0.2 * size, p(0, 0, 0.11), p(0, 0, 0.7)),
-        b.cylinder(0.3 * size, p(0, 0, 0.68), p(0, 0, 0.85)),
+        p.cylinder(0.2, 0.11, 0.7),
+        p.cylinder(0.3, 0.68, 0.85),
         [
-            b.rod(0.03 * size, p(0.28 * cos(a), 0.28 * sin(a), 0.77), p(1.1 * cos(a), 1.1 * sin(a), 0.77))
+            p.rod(0.03, (0.28 * cos(a), 0.28 * sin(a), 0.77), (1.1 * cos(a), 1.1 * sin(a), 0.77))
             for a in [6.28318 * k / 6 for k in range(6)]
         ],
         look="wood",
     )
-    b.cut("drum", b.cylinder(0.063 * size, p(0, 0, 0), p(0, 0, 1)))
+    b.cut("drum", p.cylinder(0.063, 0, 1))
     b.spin("drum", "base", Z, (0, 0, 0))
 
 
@@ -204,28 +195,29 @@ def capstan(b: ObjectBuilder, size: float) -> None:
 )
 def porthole(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     b.part(
         "frame",
-        b.tube(1.35 * r, 0.95 * r, (0, 0, 0), (0, 0.12 * r, 0)),
+        p.tube(1.35, 0.95, (0, 0, 0), (0, 0.12, 0)),
         [
             box((-1.45 * r, -0.22 * r, s * 0.3 * r - 0.07 * r), (-1.2 * r, 0.05 * r, s * 0.3 * r + 0.07 * r))
             for s in (-1, 1)
         ],
         look="brass",
     )
-    b.bore("frame", b.cylinder(0.05 * r, (-1.33 * r, -0.12 * r, -r), (-1.33 * r, -0.12 * r, r)))
+    b.bore("frame", p.cylinder(0.05, (-1.33, -0.12, -1), (-1.33, -0.12, 1)))
     b.part(
         "window",
-        b.cylinder(1.12 * r, (0, -0.18 * r, 0), (0, -0.04 * r, 0)),
-        b.cylinder(0.04 * r, (-1.33 * r, -0.12 * r, -0.36 * r), (-1.33 * r, -0.12 * r, 0.36 * r)),
-        slab((-1.33 * r, -1.0 * r), (-0.16 * r, -0.08 * r), 0.2 * r),
+        p.cylinder(1.12, (0, -0.18, 0), (0, -0.04, 0)),
+        p.cylinder(0.04, (-1.33, -0.12, -0.36), (-1.33, -0.12, 0.36)),
+        p.slab((-1.33, -1.0), (-0.16, -0.08), 0.2),
         look="glass",
     )
     b.hinge("window", "frame", -Z, [-1.33 * r, -0.12 * r, 0], 1.7)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"dog_{k + 1}",
-            b.cylinder(0.06 * r, (0.95 * r, -0.3 * r, s * 0.82 * r), (0.95 * r, -0.005 * r, s * 0.82 * r)),
+            p.cylinder(0.06, (0.95, -0.3, s * 0.82), (0.95, -0.005, s * 0.82)),
             box((0.88 * r, -0.3 * r, s * 0.82 * r - 0.25 * r), (1.02 * r, -0.22 * r, s * 0.82 * r + 0.05 * r)),
             look="brass",
         )
@@ -284,32 +276,27 @@ def dish_rack(b: ObjectBuilder, width: float) -> None:
     size=(0.9, 1.3),
 )
 def bread_slicer(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "body",
-        box(p(-0.16, -0.18, 0), p(0.16, 0.18, 0.03)),
-        box(p(0.02, -0.05, 0.025), p(0.12, 0.05, 0.2)),
-        look="white metal",
-    )
-    b.bore("body", b.cylinder(0.012 * size, p(-1, 0, 0.15), p(1, 0, 0.15)))
+    p = b.sized(size)
+    b.part("body", p.slab(0.16, 0.18, (0, 0.03)), p.slab((0.02, 0.12), 0.05, (0.025, 0.2)), look="white metal")
+    b.bore("body", p.cylinder(0.012, (-1, 0, 0.15), (1, 0, 0.15)))
     b.part(
         "blade",
-        b.cylinder(0.1 * size, p(0.008, 0, 0.15), p(0.012, 0, 0.15)),
-        b.cylinder(0.01 * size, p(0.01, 0, 0.15), p(0.16, 0, 0.15)),
+        p.cylinder(0.1, (0.008, 0, 0.15), (0.012, 0, 0.15)),
+        p.cylinder(0.01, (0.01, 0, 0.15), (0.16, 0, 0.15)),
         look="steel",
     )
     b.spin("blade", "body", X, p(0, 0, 0.15))
     b.part(
         "crank",
-        beam(0.02 * size, 0.012 * size, p(0.168, 0, 0.15), p(0.168, 0, 0.06), X),
-        b.rod(0.009 * size, p(0.17, 0, 0.06), p(0.23, 0, 0.06)),
+        p.beam(0.02, 0.012, (0.168, 0, 0.15), (0.168, 0, 0.06), X),
+        p.rod(0.009, (0.17, 0, 0.06), (0.23, 0, 0.06)),
         look="metal",
     )
     b.fix("crank", "blade")
     b.part(
         "carriage",
-        box(p(-0.14, -0.12, 0.034), p(-0.01, 0.06, 0.044)),
-        box(p(-0.14, 0.05, 0.04), p(-0.01, 0.06, 0.16)),
+        p.box((-0.14, -0.12, 0.034), (-0.01, 0.06, 0.044)),
+        p.box((-0.14, 0.05, 0.04), (-0.01, 0.06, 0.16)),
         look="metal",
     )
     b.slide("carriage", "body", Y, 0.1, lower=-0.05)
@@ -321,24 +308,20 @@ def bread_slicer(b: ObjectBuilder, size: float) -> None:
     size=(0.9, 1.3),
 )
 def laboratory_stirrer(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "stand",
-        box(p(-0.12, -0.16, 0), p(0.12, 0.12, 0.02)),
-        b.cylinder(0.009 * size, p(0, 0.08, 0.015), p(0, 0.08, 0.7)),
+        p.slab(0.12, (-0.16, 0.12), (0, 0.02)),
+        p.cylinder(0.009, (0, 0.08, 0.015), (0, 0.08, 0.7)),
         look="steel",
     )
-    b.part("head", box(p(-0.05, -0.1, 0.46), p(0.05, 0.1, 0.56)), look="white")
-    b.bore(
-        "head",
-        b.cylinder(0.0098 * size, p(0, 0.08, 0), p(0, 0.08, 1)),
-        b.cylinder(0.006 * size, p(0, -0.04, 0.4), p(0, -0.04, 0.52)),
-    )
+    b.part("head", p.slab(0.05, 0.1, (0.46, 0.56)), look="white")
+    b.bore("head", p.cylinder(0.0098, (0, 0.08, 0), (0, 0.08, 1)), p.cylinder(0.006, (0, -0.04, 0.4), (0, -0.04, 0.52)))
     b.slide("head", "stand", Z, 0.13, lower=-0.1)
     b.part(
         "paddle",
-        b.cylinder(0.005 * size, p(0, -0.04, 0.17), p(0, -0.04, 0.51)),
-        [box(p(s * 0.02 - 0.018, -0.042, 0.17), p(s * 0.02 + 0.018, -0.038, 0.2)) for s in (-1, 1)],
+        p.cylinder(0.005, (0, -0.04, 0.17), (0, -0.04, 0.51)),
+        [p.box((s * 0.02 - 0.018, -0.042, 0.17), (s * 0.02 + 0.018, -0.038, 0.2)) for s in (-1, 1)],
         look="steel",
     )
     b.spin("paddle", "head", Z, p(0, -0.04, 0))

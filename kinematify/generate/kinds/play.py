@@ -3,50 +3,26 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import button, knob, plunger
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 
 @kind(walls=3, words="humming top, toy top", size=(0.9, 1.3))
 def spinning_top(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "stand",
-        b.cylinder(0.05 * size, p(0, 0, 0), p(0, 0, 0.01)),
-        b.cylinder(0.012 * size, p(0, 0, 0), p(0, 0, 0.03)),
-        look="wood",
-    )
+    p = b.sized(size)
+    b.part("stand", p.cylinder(0.05, 0, 0.01), p.cylinder(0.012, 0, 0.03), look="wood")
     b.part(
         "top",
-        b.lathe(
-            [
-                (0, 0.032 * size),
-                (0.02 * size, 0.04 * size),
-                (0.08 * size, 0.1 * size),
-                (0.06 * size, 0.13 * size),
-                (0.015 * size, 0.16 * size),
-                (0, 0.16 * size),
-            ],
-            (0, 0, 0),
-        ),
+        p.lathe([(0, 0.032), (0.02, 0.04), (0.08, 0.1), (0.06, 0.13), (0.015, 0.16), (0, 0.16)], (0, 0, 0)),
         look="red metal",
     )
-    b.bore("top", b.cylinder(0.0065 * size, p(0, 0, 0.06), p(0, 0, 1)))
+    b.bore("top", p.cylinder(0.0065, 0.06, 1))
     b.spin("top", "stand", Z, (0, 0, 0))
-    b.part(
-        "handle",
-        b.cylinder(0.005 * size, p(0, 0, 0.09), p(0, 0, 0.24)),
-        ball(0.014 * size, p(0, 0, 0.245)),
-        look="yellow wood",
-    )
+    b.part("handle", p.cylinder(0.005, 0.09, 0.24), p.ball(0.014, (0, 0, 0.245)), look="yellow wood")
     b.slide("handle", "top", -Z, 0.025, lower=-0.03)
 
 
@@ -63,18 +39,18 @@ def rubiks_cube(b: ObjectBuilder, size: float) -> None:
 
 @kind(size=(0.8, 1.2))
 def crossbow(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "stock",
-        box(p(-0.03, -0.4, 0), p(0.03, 0.3, 0.05)),
-        beam(0.04 * size, 0.08 * size, p(0, 0.25, 0.02), p(0, 0.5, -0.03), Z),
-        [beam(0.02 * size, 0.03 * size, p(0, -0.38, 0.03), p(s * 0.35, -0.25, 0.03)) for s in (-1, 1)],
+        p.slab(0.03, (-0.4, 0.3), (0, 0.05)),
+        p.beam(0.04, 0.08, (0, 0.25, 0.02), (0, 0.5, -0.03), Z),
+        [p.beam(0.02, 0.03, (0, -0.38, 0.03), (s * 0.35, -0.25, 0.03)) for s in (-1, 1)],
         look="wood",
     )
-    b.bore("stock", box(p(-0.008, 0.09, -0.1), p(0.008, 0.16, 0.03)), box(p(-0.01, -0.38, 0.03), p(0.01, 0.15, 0.1)))
-    b.part("trigger", beam(0.012 * size, 0.01 * size, p(0, 0.12, 0.02), p(0, 0.14, -0.06), Y), look="steel")
+    b.bore("stock", p.slab(0.008, (0.09, 0.16), (-0.1, 0.03)), p.slab(0.01, (-0.38, 0.15), (0.03, 0.1)))
+    b.part("trigger", p.beam(0.012, 0.01, (0, 0.12, 0.02), (0, 0.14, -0.06), Y), look="steel")
     b.hinge("trigger", "stock", X, p(0, 0.12, 0.02), 0.1, lower=-0.2)
-    b.part("slide", box(p(-0.009, -0.1, 0.031), p(0.009, -0.06, 0.06)), look="steel")
+    b.part("slide", p.slab(0.009, (-0.1, -0.06), (0.031, 0.06)), look="steel")
     b.slide("slide", "stock", Y, 0.15, lower=-0.2)
 
 
@@ -105,26 +81,26 @@ def fishing_rod(b: ObjectBuilder, length: float) -> None:
 
 @kind(words="cross trainer, elliptical, air walker", size=(0.9, 1.1))
 def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
-        box(p(-0.25, -0.7, 0), p(0.25, -0.6, 0.06)),
-        box(p(-0.25, 0.6, 0), p(0.25, 0.7, 0.06)),
-        box(p(-0.04, -0.65, 0.02), p(0.04, 0.65, 0.09)),
-        beam(0.08 * size, 0.08 * size, p(0, -0.5, 0.05), p(0, -0.4, 1.4), X),
-        b.cylinder(0.02 * size, p(-0.28, -0.44, 0.85), p(0.28, -0.44, 0.85)),
-        box(p(-0.15, -0.5, 1.35), p(0.15, -0.4, 1.55)),
-        b.cylinder(0.3 * size, p(-0.06, 0.45, 0.4), p(0.06, 0.45, 0.4)),
-        box(p(-0.06, 0.4, 0.05), p(0.06, 0.5, 0.3)),
+        p.slab(0.25, (-0.7, -0.6), (0, 0.06)),
+        p.slab(0.25, (0.6, 0.7), (0, 0.06)),
+        p.slab(0.04, 0.65, (0.02, 0.09)),
+        p.beam(0.08, 0.08, (0, -0.5, 0.05), (0, -0.4, 1.4), X),
+        p.cylinder(0.02, (-0.28, -0.44, 0.85), (0.28, -0.44, 0.85)),
+        p.slab(0.15, (-0.5, -0.4), (1.35, 1.55)),
+        p.cylinder(0.3, (-0.06, 0.45, 0.4), (0.06, 0.45, 0.4)),
+        p.slab(0.06, (0.4, 0.5), (0.05, 0.3)),
         look="black",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
             f"handle_{k}",
-            b.tube(0.035 * size, 0.0225 * size, p(s * 0.2, -0.44, 0.85), p(s * 0.25, -0.44, 0.85)),
-            beam(0.03 * size, 0.03 * size, p(s * 0.225, -0.44, 0.88), p(s * 0.225, -0.3, 1.5), X),
-            beam(0.03 * size, 0.03 * size, p(s * 0.225, -0.44, 0.82), p(s * 0.225, -0.4, 0.25), X),
-            box(p(s * 0.12, -0.45, 0.18), p(s * 0.24, 0, 0.25)),
+            p.tube(0.035, 0.0225, (s * 0.2, -0.44, 0.85), (s * 0.25, -0.44, 0.85)),
+            p.beam(0.03, 0.03, (s * 0.225, -0.44, 0.88), (s * 0.225, -0.3, 1.5), X),
+            p.beam(0.03, 0.03, (s * 0.225, -0.44, 0.82), (s * 0.225, -0.4, 0.25), X),
+            p.box((s * 0.12, -0.45, 0.18), (s * 0.24, 0, 0.25)),
             look="grey steel",
         )
         b.hinge(f"handle_{k}", "frame", X, p(0, -0.44, 0.85), 0.25, lower=-0.25)
@@ -132,25 +108,25 @@ def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="bench press, training bench, sit up bench", size=(0.9, 1.1))
 def weight_bench(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
-        box(p(-0.03, -0.6, 0.3), p(0.03, 0.7, 0.36)),
-        box(p(-0.3, 0.62, 0), p(0.3, 0.68, 0.05)),
-        box(p(-0.3, -0.6, 0), p(0.3, -0.54, 0.05)),
-        box(p(-0.03, -0.6, 0), p(0.03, -0.54, 0.31)),
-        box(p(-0.03, 0.62, 0), p(0.03, 0.68, 0.31)),
-        [box(p(s * 0.4, 0.6, 0.02), p(s * 0.34, 0.66, 0.95)) for s in (-1, 1)],
-        box(p(-0.4, 0.61, 0.02), p(0.4, 0.65, 0.06)),
-        box(p(-0.14, -0.6, 0.36), p(0.14, -0.2, 0.42)),
+        p.slab(0.03, (-0.6, 0.7), (0.3, 0.36)),
+        p.slab(0.3, (0.62, 0.68), (0, 0.05)),
+        p.slab(0.3, (-0.6, -0.54), (0, 0.05)),
+        p.slab(0.03, (-0.6, -0.54), (0, 0.31)),
+        p.slab(0.03, (0.62, 0.68), (0, 0.31)),
+        [p.box((s * 0.4, 0.6, 0.02), (s * 0.34, 0.66, 0.95)) for s in (-1, 1)],
+        p.slab(0.4, (0.61, 0.65), (0.02, 0.06)),
+        p.slab(0.14, (-0.6, -0.2), (0.36, 0.42)),
         look="black steel",
     )
-    b.part("back", box(p(-0.14, -0.19, 0.365), p(0.14, 0.55, 0.42)), look="red")
+    b.part("back", p.slab(0.14, (-0.19, 0.55), (0.365, 0.42)), look="red")
     b.hinge("back", "frame", X, p(0, -0.19, 0.42), 0.9)
     b.part(
         "bar",
-        b.cylinder(0.014 * size, p(-0.7, 0.63, 0.966), p(0.7, 0.63, 0.966)),
-        [b.cylinder(0.18 * size, p(s * 0.55, 0.63, 0.966), p(s * 0.61, 0.63, 0.966)) for s in (-1, 1)],
+        p.cylinder(0.014, (-0.7, 0.63, 0.966), (0.7, 0.63, 0.966)),
+        [p.cylinder(0.18, (s * 0.55, 0.63, 0.966), (s * 0.61, 0.63, 0.966)) for s in (-1, 1)],
         look="steel",
     )
     b.slide("bar", "frame", Z, 0.3)
@@ -226,11 +202,7 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
         ),
         look="black wood",
     )
-    b.cut(
-        "cabinet",
-        slab(w - 0.03, (-0.3, 0.32), (0.1, 0.85)),
-        slab(0.42 * width, (-0.4, -0.3), (0.15, 0.75)),
-    )
+    b.cut("cabinet", slab(w - 0.03, (-0.3, 0.32), (0.1, 0.85)), slab(0.42 * width, (-0.4, -0.3), (0.15, 0.75)))
     leaf(
         b,
         "door",
@@ -256,19 +228,19 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
 
 @kind(words="ping pong table, folding table tennis table", size=(0.8, 1.0))
 def table_tennis_table(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
-        [box(p(x - 0.03, s * 0.2 - 0.02, 0), p(x + 0.03, s * 0.2 + 0.02, 0.68)) for x in (-0.6, 0.6) for s in (-1, 1)],
-        [box(p(x - 0.03, -0.25, 0.62), p(x + 0.03, 0.25, 0.68)) for x in (-0.6, 0.6)],
-        box(p(-0.6, -0.02, 0.3), p(0.6, 0.02, 0.36)),
-        [box(p(x - 0.03, -0.2, 0.3), p(x + 0.03, 0.2, 0.36)) for x in (-0.6, 0.6)],
-        [box(p(x - 0.02, -0.2, 0), p(x + 0.02, 0.2, 0.05)) for x in (-0.6, 0.6)],
+        [p.box((x - 0.03, s * 0.2 - 0.02, 0), (x + 0.03, s * 0.2 + 0.02, 0.68)) for x in (-0.6, 0.6) for s in (-1, 1)],
+        [p.slab((x - 0.03, x + 0.03), 0.25, (0.62, 0.68)) for x in (-0.6, 0.6)],
+        p.slab(0.6, 0.02, (0.3, 0.36)),
+        [p.slab((x - 0.03, x + 0.03), 0.2, (0.3, 0.36)) for x in (-0.6, 0.6)],
+        [p.slab((x - 0.02, x + 0.02), 0.2, (0, 0.05)) for x in (-0.6, 0.6)],
         look="black steel",
     )
     for k, s in enumerate((-1, 1)):
-        b.part(f"half_{k}", box(p(-0.76, s * 0.005, 0.73), p(0.76, s * 1.37, 0.76)), look="dark green wood")
-        b.part("frame", [box(p(x - 0.015, s * 0.035, 0.67), p(x + 0.015, s * 0.005, 0.728)) for x in (-0.6, 0.6)])
+        b.part(f"half_{k}", p.slab(0.76, (s * 0.005, s * 1.37), (0.73, 0.76)), look="dark green wood")
+        b.part("frame", [p.box((x - 0.015, s * 0.035, 0.67), (x + 0.015, s * 0.005, 0.728)) for x in (-0.6, 0.6)])
         b.hinge(f"half_{k}", "frame", s * X, p(0, s * 0.005, 0.76), 1.5)
 
 
@@ -293,15 +265,15 @@ def roulette(b: ObjectBuilder, radius: float) -> None:
 
 @kind(words="squeezebox", size=(0.8, 1.1))
 def accordion(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.18, 0, 0), p(0, 0.18, 0.36)),
-        box(p(0, 0.015, 0.02), p(0.1, 0.165, 0.34)),
-        box(p(-0.24, -0.02, 0.03), p(-0.17, 0.06, 0.33)),
+        p.box((-0.18, 0, 0), (0, 0.18, 0.36)),
+        p.box((0, 0.015, 0.02), (0.1, 0.165, 0.34)),
+        p.box((-0.24, -0.02, 0.03), (-0.17, 0.06, 0.33)),
         look="red",
     )
-    b.part("half", box(p(0.102, 0, 0), p(0.2, 0.18, 0.36)), look="red")
+    b.part("half", p.box((0.102, 0, 0), (0.2, 0.18, 0.36)), look="red")
     b.slide("half", "body", X, 0.15)
     for k, z in enumerate(spread(9, 0.04 * size, 0.32 * size)):
         b.part(
@@ -314,24 +286,24 @@ def accordion(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="cornet, flugelhorn, bugle with valves", size=(0.9, 1.1))
 def trumpet(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.006 * size, p(-0.25, 0, 0.05), p(0.15, 0, 0.05)),
-        b.cone(0.006 * size, 0.06 * size, p(0.1, 0, 0.05), p(0.3, 0, 0.05)),
-        [b.cylinder(0.011 * size, p(x, 0, -0.04), p(x, 0, 0.08)) for x in (-0.03, 0, 0.03)],
-        b.cylinder(0.006 * size, p(-0.15, 0, -0.02), p(0.15, 0, -0.02)),
-        [beam(0.01 * size, 0.01 * size, p(x, 0, -0.022), p(x, 0, 0.052), X) for x in (-0.15, 0.15)],
-        b.cone(0.012 * size, 0.006 * size, p(-0.28, 0, 0.05), p(-0.245, 0, 0.05)),
+        p.cylinder(0.006, (-0.25, 0, 0.05), (0.15, 0, 0.05)),
+        p.cone(0.006, 0.06, (0.1, 0, 0.05), (0.3, 0, 0.05)),
+        [p.cylinder(0.011, (x, 0, -0.04), (x, 0, 0.08)) for x in (-0.03, 0, 0.03)],
+        p.cylinder(0.006, (-0.15, 0, -0.02), (0.15, 0, -0.02)),
+        [p.beam(0.01, 0.01, (x, 0, -0.022), (x, 0, 0.052), X) for x in (-0.15, 0.15)],
+        p.cone(0.012, 0.006, (-0.28, 0, 0.05), (-0.245, 0, 0.05)),
         look="brass",
     )
-    b.cut("body", b.cone(0.004 * size, 0.056 * size, p(0.12, 0, 0.05), p(0.301, 0, 0.05)))
+    b.cut("body", p.cone(0.004, 0.056, (0.12, 0, 0.05), (0.301, 0, 0.05)))
     for k, x in enumerate((-0.03, 0, 0.03)):
-        b.cut("body", b.cylinder(0.0075 * size, p(x, 0, 0.055), p(x, 0, 0.1)))
+        b.cut("body", p.cylinder(0.0075, (x, 0, 0.055), (x, 0, 0.1)))
         b.part(
             f"valve_{k}",
-            b.cylinder(0.006 * size, p(x, 0, 0.073), p(x, 0, 0.098)),
-            b.cylinder(0.0095 * size, p(x, 0, 0.097), p(x, 0, 0.101)),
+            p.cylinder(0.006, (x, 0, 0.073), (x, 0, 0.098)),
+            p.cylinder(0.0095, (x, 0, 0.097), (x, 0, 0.101)),
             look="chrome",
         )
         b.slide(f"valve_{k}", "body", -Z, 0.014)
@@ -339,24 +311,24 @@ def trumpet(b: ObjectBuilder, size: float) -> None:
 
 @kind(walls=4.5, words="slide trombone", size=(0.9, 1.1))
 def trombone(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "horn",
-        [b.cylinder(0.006 * size, p(0, y, 0), p(-0.7, y, 0)) for y in (-0.05, 0.05)],
-        b.cylinder(0.006 * size, p(-0.02, -0.052, 0), p(-0.02, 0.052, 0)),
-        b.cylinder(0.008 * size, p(0, 0.05, 0), p(0.35, 0.05, 0)),
-        b.cylinder(0.008 * size, p(0.35, 0.046, 0), p(0.35, 0.154, 0)),
-        b.cylinder(0.008 * size, p(0.35, 0.15, 0), p(0, 0.15, 0)),
-        b.cone(0.008 * size, 0.09 * size, p(0.01, 0.15, 0), p(-0.4, 0.15, 0)),
-        b.cone(0.01 * size, 0.006 * size, p(0.04, -0.05, 0), p(-0.01, -0.05, 0)),
+        [p.cylinder(0.006, (0, y, 0), (-0.7, y, 0)) for y in (-0.05, 0.05)],
+        p.cylinder(0.006, (-0.02, -0.052, 0), (-0.02, 0.052, 0)),
+        p.cylinder(0.008, (0, 0.05, 0), (0.35, 0.05, 0)),
+        p.cylinder(0.008, (0.35, 0.046, 0), (0.35, 0.154, 0)),
+        p.cylinder(0.008, (0.35, 0.15, 0), (0, 0.15, 0)),
+        p.cone(0.008, 0.09, (0.01, 0.15, 0), (-0.4, 0.15, 0)),
+        p.cone(0.01, 0.006, (0.04, -0.05, 0), (-0.01, -0.05, 0)),
         look="brass",
     )
-    b.cut("horn", b.cone(0.006 * size, 0.087 * size, p(0, 0.15, 0), p(-0.401, 0.15, 0)))
+    b.cut("horn", p.cone(0.006, 0.087, (0, 0.15, 0), (-0.401, 0.15, 0)))
     b.part(
         "slide",
-        [b.tube(0.0095 * size, 0.0075 * size, p(-0.08, y, 0), p(-0.75, y, 0)) for y in (-0.05, 0.05)],
-        b.cylinder(0.009 * size, p(-0.75, -0.058, 0), p(-0.75, 0.058, 0)),
-        beam(0.008 * size, 0.006 * size, p(-0.1, -0.042, 0), p(-0.1, 0.042, 0)),
+        [p.tube(0.0095, 0.0075, (-0.08, y, 0), (-0.75, y, 0)) for y in (-0.05, 0.05)],
+        p.cylinder(0.009, (-0.75, -0.058, 0), (-0.75, 0.058, 0)),
+        p.beam(0.008, 0.006, (-0.1, -0.042, 0), (-0.1, 0.042, 0)),
         look="brass",
     )
     b.slide("slide", "horn", -X, 0.5)
@@ -368,21 +340,21 @@ def trombone(b: ObjectBuilder, size: float) -> None:
     number=whole(4, 6, words="peg, string, tuner"),
 )
 def guitar(b: ObjectBuilder, size: float, number: int) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.19 * size, p(0, 0, -0.05), p(0, 0, 0.05)),
-        b.cylinder(0.145 * size, p(0, 0.23, -0.05), p(0, 0.23, 0.05)),
-        box(p(-0.03, 0.3, 0.02), p(0.03, 0.75, 0.06)),
-        box(p(-0.045, 0.74, 0.015), p(0.045, 0.92, 0.045)),
-        box(p(-0.07, -0.08, 0.049), p(0.07, -0.05, 0.062)),
+        p.cylinder(0.19, -0.05, 0.05),
+        p.cylinder(0.145, (0, 0.23, -0.05), (0, 0.23, 0.05)),
+        p.slab(0.03, (0.3, 0.75), (0.02, 0.06)),
+        p.slab(0.045, (0.74, 0.92), (0.015, 0.045)),
+        p.slab(0.07, (-0.08, -0.05), (0.049, 0.062)),
         look="wood",
     )
     b.cut(
         "body",
-        b.cylinder(0.18 * size, p(0, 0, -0.044), p(0, 0, 0.044)),
-        b.cylinder(0.135 * size, p(0, 0.23, -0.044), p(0, 0.23, 0.044)),
-        b.cylinder(0.055 * size, p(0, 0.16, 0), p(0, 0.16, 0.052)),
+        p.cylinder(0.18, -0.044, 0.044),
+        p.cylinder(0.135, (0, 0.23, -0.044), (0, 0.23, 0.044)),
+        p.cylinder(0.055, (0, 0.16, 0), (0, 0.16, 0.052)),
     )
     for k in range(number):
         s = -1 if k % 2 else 1
@@ -449,42 +421,42 @@ def castanets(b: ObjectBuilder, radius: float) -> None:
 
 @kind("nodding dog", words="bobblehead, bobble head, nodding toy, wobbly toy", size=(0.8, 1.3))
 def bobblehead(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.04 * size, p(0, 0, 0), p(0, 0, 0.01)),
-        b.cone(0.03 * size, 0.018 * size, p(0, 0, 0.01), p(0, 0, 0.08)),
-        [box(p(s * 0.009, -0.005, 0.075), p(s * 0.013, 0.005, 0.1)) for s in (-1, 1)],
+        p.cylinder(0.04, 0, 0.01),
+        p.cone(0.03, 0.018, 0.01, 0.08),
+        [p.slab((s * 0.009, s * 0.013), 0.005, (0.075, 0.1)) for s in (-1, 1)],
         look="blue",
     )
     b.part(
         "head",
-        ball(0.03 * size, p(0, 0, 0.125)),
-        box(p(-0.0075, -0.005, 0.085), p(0.0075, 0.005, 0.1)),
-        b.cone(0.006 * size, 0.003 * size, p(0, -0.028, 0.122), p(0, -0.042, 0.12)),
+        p.ball(0.03, (0, 0, 0.125)),
+        p.slab(0.0075, 0.005, (0.085, 0.1)),
+        p.cone(0.006, 0.003, (0, -0.028, 0.122), (0, -0.042, 0.12)),
         look="pink",
     )
-    b.cut("head", [box(p(s * 0.008, -0.02, 0), p(s * 0.03, 0.02, 0.103)) for s in (-1, 1)])
+    b.cut("head", [p.slab((s * 0.008, s * 0.03), 0.02, (0, 0.103)) for s in (-1, 1)])
     b.hinge("head", "body", X, p(0, 0, 0.092), 0.12, lower=-0.12)
 
 
 @kind("gymnast toy", words="acrobat toy, high bar toy", size=(0.8, 1.4))
 def acrobat_toy(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
-        box(p(-0.09, -0.05, 0), p(0.09, 0.05, 0.015)),
-        [box(p(s * 0.08, -0.01, 0.01), p(s * 0.07, 0.01, 0.26)) for s in (-1, 1)],
+        p.slab(0.09, 0.05, (0, 0.015)),
+        [p.slab((s * 0.08, s * 0.07), 0.01, (0.01, 0.26)) for s in (-1, 1)],
         look="wood",
     )
-    b.bore("frame", b.cylinder(0.0055 * size, p(-1, 0, 0.24), p(1, 0, 0.24)))
+    b.bore("frame", p.cylinder(0.0055, (-1, 0, 0.24), (1, 0, 0.24)))
     b.part(
         "figure",
-        b.cylinder(0.004 * size, p(-0.09, 0, 0.24), p(0.09, 0, 0.24)),
-        [b.rod(0.007 * size, p(s * 0.025, 0, 0.24), p(s * 0.025, 0, 0.18)) for s in (-1, 1)],
-        box(p(-0.025, -0.012, 0.12), p(0.025, 0.012, 0.18)),
-        ball(0.018 * size, p(0, 0, 0.195)),
-        [b.rod(0.008 * size, p(s * 0.014, 0, 0.12), p(s * 0.014, 0, 0.06)) for s in (-1, 1)],
+        p.cylinder(0.004, (-0.09, 0, 0.24), (0.09, 0, 0.24)),
+        [p.rod(0.007, (s * 0.025, 0, 0.24), (s * 0.025, 0, 0.18)) for s in (-1, 1)],
+        p.slab(0.025, 0.012, (0.12, 0.18)),
+        p.ball(0.018, (0, 0, 0.195)),
+        [p.rod(0.008, (s * 0.014, 0, 0.12), (s * 0.014, 0, 0.06)) for s in (-1, 1)],
         look="red wood",
     )
     b.spin("figure", "frame", X, p(0, 0, 0.24))

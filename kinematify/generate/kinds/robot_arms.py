@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from kinematify.generate.kinds.limbs import finger_palm, fingered, jaw_rail, jaws
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
 from kinematify.generate.procedural.solids import box, cylinder, hull, off, slab, union, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
@@ -45,18 +41,12 @@ def serial_arm(
     w: Workshop, joints: int, length: float, gripper: str, fingers: int, radius: float, open: float, clearance: float
 ) -> None:
     """Robot arms: a foot and any number of joints that turn about the upright and across it in turn."""
-    # half: of a gripper: half the way of its jaws, length of its fingers [m]
-    # finger: of a gripper: half the way of its jaws, length of its fingers [m]
-    half = 0.06
-    finger = 0.07
+    half = 0.06  # of a gripper: half the way of its jaws, length of its fingers [m]
+    finger = 0.07  # of a gripper: half the way of its jaws, length of its fingers [m]
     reach = length / max(joints, 1) - 3.0 * radius
     parent = "foot"
     side = 1.0
-    w.body(
-        parent,
-        slab((-3 * radius, 2 * radius), 2 * radius, (0, 0.02)),
-        cylinder(radius, 0.01, 0.02 + 1.1 * radius),
-    )
+    w.body(parent, slab((-3 * radius, 2 * radius), 2 * radius, (0, 0.02)), cylinder(radius, 0.01, 0.02 + 1.1 * radius))
     tip = vector(0.0, 0.0, 0.02 + radius)
     for k in range(joints):
         name = f"link_{k + 1}"
@@ -117,11 +107,11 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
     start = elbow[2] + clearance
     half = 0.016
     x = upper_arm + forearm
-    its_room = half + clearance
+    room = half + clearance
     arm = hull(*[cylinder(size, (at, 0, start), (at, 0, start + thick)) for at in (upper_arm, x)])
     head = cylinder(0.7 * size, (x, 0, start - 0.02), (x, 0, start + thick + 0.06))
     w.body("forearm", second, arm, head)
-    w.cut("forearm", slab((x - its_room, x + its_room), its_room, (start - 1, start + 1)))
+    w.cut("forearm", slab((x - room, x + room), room, (start - 1, start + 1)))
     w.turns("forearm", "upper_arm", (0, 0, 1), elbow, (-2.0, 2.0))
     bottom = start - 0.06
     top = start + thick + 0.09 + stroke
@@ -152,8 +142,7 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
 )
 def gantry(w: Workshop, width: float, depth: float, height: float, clearance: float) -> None:
     """Gantries: a bridge along a bed, a carriage along the bridge, a ram up and down; each on rails."""
-    # bar: Half the width of a rail [m].
-    bar = 0.02
+    bar = 0.02  # half the width of a rail [m]
     tall = 0.06
     inner = bar + clearance
     bed = [slab(0.5 * width, 0.5 * depth, (0, 0.05))]
@@ -178,9 +167,9 @@ def gantry(w: Workshop, width: float, depth: float, height: float, clearance: fl
     half = 0.07
     carriage = slab(half, 0.06, (top - 2 * bar - 0.03, top + 0.03))
     carriage = carriage - slab(1, inner, (top - 2 * bar - clearance, top + clearance))
-    its_room = 0.015 + clearance
+    room = 0.015 + clearance
     tower = slab(0.04, (-0.13, -0.05), (top - 2 * bar - 0.03, top + 0.03))
-    tower = tower - slab(its_room, (-0.09 - its_room, -0.09 + its_room), (0, 2 * height))
+    tower = tower - slab(room, (-0.09 - room, -0.09 + room), (0, 2 * height))
     w.body("carriage", union(carriage, tower))
     reach = 0.5 * (rails[1] - rails[0]) - bar - half - 0.002
     w.slides("carriage", "bridge", (1, 0, 0), (0, 0, top), (-reach, reach))
@@ -229,18 +218,13 @@ def hand(
     w: Workshop, fingers: int, joints: int, phalanx: float, finger_width: float, open: float, clearance: float
 ) -> None:
     """Robot hands: a palm with fingers of phalanges on pins, straight at zero."""
-    # shares: Length of a phalanx beside the first one.
-    shares = (1.0, 0.72, 0.62)
+    shares = (1.0, 0.72, 0.62)  # length of a phalanx beside the first one
     tight = min(clearance, 0.04 * finger_width)
     radius = 0.4 * finger_width
     pitch = 1.4 * finger_width
     half = 0.5 * pitch * fingers
     level = 0.09
-    w.body(
-        "palm",
-        slab(half, radius, (0, level - 2 * radius)),
-        cylinder(1.5 * radius, -0.04, 0.01),
-    )
+    w.body("palm", slab(half, radius, (0, level - 2 * radius)), cylinder(1.5 * radius, -0.04, 0.01))
     for finger in range(fingers):
         x = (finger - 0.5 * (fingers - 1)) * pitch
         z = level

@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
 from kinematify.errors import InputError
 from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import caster
 from kinematify.generate.library.panels import add_door, add_drawer
-from kinematify.generate.procedural.layout import parse_layout, stacked
+from kinematify.generate.procedural.layout import Cell, parse_layout, stacked
 from kinematify.generate.procedural.pieces.bearing_pieces import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, slab, union
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.layout import Cell
-    from kinematify.generate.procedural.pieces.fronts import Bay
-    from kinematify.generate.procedural.workshop import Workshop
-
+from kinematify.generate.procedural.workshop import Workshop
 
 _MOST_STACKS = 5  # of a table, and drawers in one
 
@@ -200,21 +192,8 @@ def drawer_stacks(text: str) -> list[int]:
             "doors": 0,
             "drawers": 4,
         },
-        "tool storage cabinet": {
-            "width": 0.7,
-            "height": 0.9,
-            "depth": 0.45,
-            "doors": 0,
-            "drawers": 5,
-        },
-        "charging cabinet": {
-            "width": 0.6,
-            "height": 2,
-            "depth": 0.8,
-            "doors": 1,
-            "drawers": 0,
-            "material": "steel",
-        },
+        "tool storage cabinet": {"width": 0.7, "height": 0.9, "depth": 0.45, "doors": 0, "drawers": 5},
+        "charging cabinet": {"width": 0.6, "height": 2, "depth": 0.8, "doors": 1, "drawers": 0, "material": "steel"},
         "switchgear, plc cabinet, evidence locker, proofing cabinet": {
             "width": 0.5,
             "height": 1.6,
@@ -361,10 +340,8 @@ def table(
     clearance: float,
 ) -> None:
     """Tables and desks with drawers: a row under the top, pedestals of stacked drawers at the sides, or both."""
-    # overhang: of the top on all sides [m]
-    # leg: [m]
-    overhang = 0.03
-    leg = 0.05
+    overhang = 0.03  # of the top on all sides [m]
+    leg = 0.05  # [m]
 
     # How many drawers each stack has, from left to right.
     def columns() -> Sequence[int]:
@@ -414,13 +391,13 @@ def table(
     back = depth - 2.0 * overhang
     stacks = stacks_of(half, under)
     openings = [opening_of(span, back) for stack in stacks for span in stack]
-    its_body = union(
+    body = union(
         slab(0.5 * width, (-overhang, depth - overhang), (under, height)),
         *[box((stack[0][0], 0, stack[-1][2]), (stack[0][1], back, under)) for stack in stacks],
         slab(half, (back - 0.02, back), (under - 0.08, under)),
         *[leg_of(x, y, under) for x in (-half, half - leg) for y in (0.0, back - leg)],
     )
-    w.body("body", its_body - union(*[room(opening) for opening in openings]))
+    w.body("body", body - union(*[room(opening) for opening in openings]))
     fitting = Fitting(clearance=clearance, grip=handle, rest=open)
     for k, opening in enumerate(openings):
         add_drawer(w, f"drawer_{k + 1}", "body", opening, fitting)
@@ -455,12 +432,9 @@ def folding_chair(
     clearance: float,
 ) -> None:
     """Folding chairs: a frame with a back, legs and a seat that fold into it. Zero is folded flat."""
-    # board: thickness of the slats [m]
-    # pin: radius [m]
-    # the_legs: how far the rear legs swing back [rad]
-    board = 0.014
-    pin = 0.004
-    the_legs = 0.75
+    board = 0.014  # thickness of the slats [m]
+    pin = 0.004  # radius [m]
+    the_legs = 0.75  # how far the rear legs swing back [rad]
 
     # An upright bar between two x, about the plane y = 0.
     def between(one: float, other: float, thick: float, low: float, high: float) -> Manifold:
@@ -541,16 +515,11 @@ def office_chair(
     clearance: float,
 ) -> None:
     """Office chairs: a star with castors, a gas spring, a seat that turns and a backrest that leans."""
-    # the_column: radius of the tube around the gas spring [m]
-    # the_spring: radius of the gas spring [m]
-    # sides: of the gas spring
-    # seat: thickness of the cushion [m]
-    # the_fork: width and radius of the backrest's hinge [m]
-    the_column = 0.026
-    the_spring = 0.014
-    sides = 8
-    seat = 0.065
-    the_fork = (0.07, 0.016)
+    the_column = 0.026  # radius of the tube around the gas spring [m]
+    the_spring = 0.014  # radius of the gas spring [m]
+    sides = 8  # of the gas spring
+    seat = 0.065  # thickness of the cushion [m]
+    fork = (0.07, 0.016)  # width and radius of the backrest's hinge [m]
 
     # A rod that rises in the column, of eight sides that it may not turn; returns the level of what turns on
     # it.
@@ -606,9 +575,9 @@ def office_chair(
     places = [(sx * (0.5 * width - 0.05), sy * (0.5 * depth - 0.05)) for sx in (-1, 1) for sy in (-1, 1)]
     cushion = [cylinder(0.05, (*xy, level_2 + 0.02), (*xy, level_2 + seat), segments=24) for xy in places]
     plate = slab(0.1, 0.12, (level_2 - 0.01, level_2 + 0.021))
-    bracket = slab(0.03, (0.1, behind + the_fork[1]), (level_2 - 0.01, level_2 + 0.012))
-    pivot = (0.0, behind, level_2 + 0.012 + 2.0 * the_fork[1])
-    forked, tongue = bent_fork(pivot, (0.0, 0.0), the_fork[0], the_fork[1], clearance)
+    bracket = slab(0.03, (0.1, behind + fork[1]), (level_2 - 0.01, level_2 + 0.012))
+    pivot = (0.0, behind, level_2 + 0.012 + 2.0 * fork[1])
+    forked, tongue = bent_fork(pivot, (0.0, 0.0), fork[0], fork[1], clearance)
     w.add("seat", plate, bracket, forked, hull(*cushion))
     if armrests == "armrests":
         w.add("seat", [solid for s in (-1, 1) for solid in armrest(s * (0.5 * width + 0.02), level_2)])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import asin, cos, degrees, pi, radians, sin
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from manifold3d import Manifold
@@ -15,14 +16,23 @@ from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.pieces.bearing_pieces import FRONT, BackEdge, add_barrels, at, bent_fork, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, room
-from kinematify.generate.procedural.solids import SEGMENTS, Y, Z, ball, box, cylinder, hull, rod, slab, union, vector
+from kinematify.generate.procedural.solids import (
+    SEGMENTS,
+    Point,
+    Y,
+    Z,
+    ball,
+    box,
+    cylinder,
+    hull,
+    rod,
+    slab,
+    union,
+    vector,
+)
+from kinematify.generate.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any
-
-    from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
 
 
@@ -51,13 +61,10 @@ def toaster(
     clearance: float,
 ) -> None:
     """Toasters: levers in front that carry the bread down, knobs, and a crumb tray."""
-    # floor: underside of the slots [m]
-    # shaft: y where the slots for the bread begin; in front of it is the room of the levers [m]
-    # plate: thickness of what carries the bread [m]
-    floor = 0.034
+    floor = 0.034  # underside of the slots [m]
     wall = 0.012
-    shaft = 0.05
-    plate = 0.005
+    shaft = 0.05  # y where the slots for the bread begin; in front of it is the room of the levers [m]
+    plate = 0.005  # thickness of what carries the bread [m]
     half = 0.5 * width
     round_ = 0.02
     corners = [(s * (half - round_), y) for s in (-1, 1) for y in (round_, depth - round_)]
@@ -154,13 +161,10 @@ def coffee_machine(
     clearance: float,
 ) -> None:
     """Coffee machines: with a jug under a filter that swings out, or with portafilters and a steam wand."""
-    # the_lid: thickness [m]
-    # base: height of the base [m]
-    # the_hinge: radius [m]
-    the_lid = 0.01
-    base = 0.05
+    the_lid = 0.01  # thickness [m]
+    base = 0.05  # height of the base [m]
     wall = 0.012
-    the_hinge = 0.004
+    the_hinge = 0.004  # radius [m]
     # Underside of what stands over the jug or the cups [m].
     head = height - max(0.3 * height, 0.1)
     column = 0.6 * depth
@@ -282,9 +286,7 @@ def coffee_machine(
 
 
 @kind(
-    usual={
-        "ceiling fan, overhead fan": {"kind": "ceiling"},
-    },
+    usual={"ceiling fan, overhead fan": {"kind": "ceiling"}},
     words=(
         "ventilator, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, usb fan, electric fan, "
         "ceiling fan, overhead fan"
@@ -312,14 +314,10 @@ def fan(
     clearance: float,
 ) -> None:
     """Fans: blades that turn without end, in a cage on a stand, under a ceiling or in a box."""
-    # the_fork: width and radius of the hinge that a head tilts on [m]
-    # flange: of the rotor [m]
-    # pitch: of the blades [deg]
-    # wire: thickness of the cage's rods [m]
-    the_fork = (0.036, 0.013)
-    flange = 0.014
-    pitch = 16.0
-    wire = 0.004
+    fork = (0.036, 0.013)  # width and radius of the hinge that a head tilts on [m]
+    flange = 0.014  # of the rotor [m]
+    pitch = 16.0  # of the blades [deg]
+    wire = 0.004  # thickness of the cage's rods [m]
     spokes = 12
     down = np.diag([1.0, -1.0, -1.0])
 
@@ -385,7 +383,7 @@ def fan(
         boss, hole, rotor = stub(swing, (0, 0, 1), 0.018, clearance, length=0.015)
         w.add("base", boss)
         w.cut("base", hole)
-        forked, tongue = bent_fork(tilt, (0.0, 0.0), the_fork[0], the_fork[1], clearance)
+        forked, tongue = bent_fork(tilt, (0.0, 0.0), fork[0], fork[1], clearance)
         w.body("yoke", rotor, forked)
         w.turns("yoke", "base", (0, 0, 1), swing, (-0.8, 0.8), rest=open)
         front = -0.5 * radius - 0.03
@@ -452,12 +450,10 @@ def desk_lamp(
     w: Workshop, joints: int, arm: float, base: float, shade: float, switch: str, open: float, clearance: float
 ) -> None:
     """Desk lamps: arms on pins one after the other, and a shade at the end."""
-    # radius: of the hinges [m]
     # the_leans: Of the post, the arms and the head's neck, from the upright towards the front [rad]; by hinges.
-    # swings: Of the hinges, counted from the head, positive upwards [rad].
-    radius = 0.011
+    radius = 0.011  # of the hinges [m]
     the_leans = {1: (0.0, 0.9), 2: (0.0, 0.3, 1.3), 3: (0.0, -0.4, 0.8, 1.6)}
-    swings = ((-0.3, 0.4), (-0.25, 0.6), (-0.4, 0.5))
+    swings = ((-0.3, 0.4), (-0.25, 0.6), (-0.4, 0.5))  # of the hinges, counted from the head, positive upwards [rad]
 
     # A hollow cone that hangs on the neck with a bulb in it; its mouth looks where `lean` says.
     def shade_of(neck: FloatArray, lean: float) -> Sequence[Manifold]:

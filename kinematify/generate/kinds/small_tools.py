@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, prism, slab, strip, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
@@ -68,11 +65,7 @@ def scissors(b: ObjectBuilder, length: float, blade: float, thick: float, loops:
         )
     r = 0.022 * length
     top = mid + g / 2 + thick + g
-    b.part(
-        "blade_1",
-        b.cylinder(r, mid - thick, top + 0.0001),
-        b.cylinder(1.8 * r, top, top + r / 2),
-    )
+    b.part("blade_1", b.cylinder(r, mid - thick, top + 0.0001), b.cylinder(1.8 * r, top, top + r / 2))
     b.cut("blade_2", b.cylinder(r + 1.5 * g, -1, 1))
     b.hinge("blade_2", "blade_1", Z, (0, 0, mid), 1.1)
 
@@ -144,11 +137,7 @@ def pliers(b: ObjectBuilder, length: float, thick: float, jaws: str, grips: str)
             ],
         )
     r = 0.4 * radius
-    b.part(
-        "lever_1",
-        b.cylinder(r, 0.0001, thick + g + 0.0001),
-        b.cylinder(1.8 * r, thick + g, thick + g + r / 2),
-    )
+    b.part("lever_1", b.cylinder(r, 0.0001, thick + g + 0.0001), b.cylinder(1.8 * r, thick + g, thick + g + r / 2))
     b.cut("lever_2", b.cylinder(r + 1.5 * g, -1, 1))
     b.hinge("lever_2", "lever_1", Z, (0, 0, mid), 0.55)
 

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import kind
 from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, slab, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from math import cos, pi, sin, tan
-from typing import TYPE_CHECKING
 
+from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import kind, whole
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab, vector
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, slab, vector
 
 
 @kind(
@@ -115,29 +112,30 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
 )
 def crank_slider(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     l = 3.5 * r
     b.part(
         "frame",
-        box((-1.6 * r, 0, -1.8 * r), (6.4 * r, 0.3 * r, -1.4 * r)),
-        slab(0.4 * r, (0, 0.3 * r), (-1.5 * r, 0.4 * r)),
-        [slab((2.2 * r, 6.4 * r), 0.3 * r, (s * 0.42 * r, s * 0.62 * r)) for s in (-1, 1)],
-        box((6 * r, 0, -1.5 * r), (6.4 * r, 0.3 * r, 0.6 * r)),
-        slab((2.2 * r, 6.4 * r), (0.1 * r, 0.3 * r), 0.6 * r),
+        p.box((-1.6, 0, -1.8), (6.4, 0.3, -1.4)),
+        p.slab(0.4, (0, 0.3), (-1.5, 0.4)),
+        [p.slab((2.2, 6.4), 0.3, (s * 0.42, s * 0.62)) for s in (-1, 1)],
+        p.box((6, 0, -1.5), (6.4, 0.3, 0.6)),
+        p.slab((2.2, 6.4), (0.1, 0.3), 0.6),
         look="grey steel",
     )
-    b.bore("frame", b.cylinder(0.22 * r, (0, -r, 0), (0, r, 0)))
+    b.bore("frame", p.cylinder(0.22, (0, -1, 0), (0, 1, 0)))
     b.part(
         "crank",
-        b.cylinder(0.2 * r, (0, -0.3 * r, 0), (0, 0.5 * r, 0)),
-        b.cylinder(1.25 * r, (0, -0.3 * r, 0), (0, -0.05 * r, 0)),
-        b.cylinder(0.16 * r, (r, -0.6 * r, 0), (r, -0.25 * r, 0)),
+        p.cylinder(0.2, (0, -0.3, 0), (0, 0.5, 0)),
+        p.cylinder(1.25, (0, -0.3, 0), (0, -0.05, 0)),
+        p.cylinder(0.16, (1, -0.6, 0), (1, -0.25, 0)),
         look="red steel",
     )
     b.spin("crank", "frame", -Y, (0, 0, 0))
     b.part(
         "rod",
         beam(0.3 * r, 0.22 * r, (r, -0.45 * r, 0), (r + l, -0.45 * r, 0), Y),
-        b.cylinder(0.3 * r, (r, -0.56 * r, 0), (r, -0.34 * r, 0)),
+        p.cylinder(0.3, (1, -0.56, 0), (1, -0.34, 0)),
         b.cylinder(0.25 * r, (r + l, -0.56 * r, 0), (r + l, -0.34 * r, 0)),
         look="metal",
     )
@@ -233,11 +231,7 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
         b.rod(0.1 * r, (c + 0.6 * r, -0.44 * r, 0), (c + 0.6 * r, -0.9 * r, 0)),
         look="red steel",
     )
-    b.cut(
-        "driver",
-        b.cylinder(0.155 * r, (c, -2 * r, 0), (c, r, 0)),
-        slab((c, c + 0.7 * r), (-0.305 * r, 0), 0.4 * r),
-    )
+    b.cut("driver", b.cylinder(0.155 * r, (c, -2 * r, 0), (c, r, 0)), slab((c, c + 0.7 * r), (-0.305 * r, 0), 0.4 * r))
     b.part("driver", b.cylinder(0.08 * r, (c + r, -0.31 * r, 0), (c + r, -0.285 * r, 0)))
     b.spin("driver", "plate", -Y, (c, 0, 0))
 
@@ -248,14 +242,8 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
     size=(0.8, 1.4),
 )
 def orrery(b: ObjectBuilder, number: int, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "base",
-        b.cylinder(0.1 * size, p(0, 0, 0), p(0, 0, 0.02)),
-        b.cylinder(0.006 * size, p(0, 0, 0.01), p(0, 0, 0.36)),
-        ball(0.035 * size, p(0, 0, 0.38)),
-        look="brass",
-    )
+    p = b.sized(size)
+    b.part("base", p.cylinder(0.1, 0, 0.02), p.cylinder(0.006, 0.01, 0.36), p.ball(0.035, (0, 0, 0.38)), look="brass")
     for k in range(number):
         x = 0.07 + 0.035 * k
         z = 0.3 - 0.03 * k
@@ -263,15 +251,10 @@ def orrery(b: ObjectBuilder, number: int, size: float) -> None:
         a = 2.4 * k
         b.part(
             f"planet_{k}",
-            b.tube(0.014 * size, 0.0075 * size, p(0, 0, z), p(0, 0, z + 0.018)),
-            beam(
-                0.005 * size,
-                0.005 * size,
-                p(0.009 * cos(a), 0.009 * sin(a), z + 0.009),
-                p(x * cos(a), x * sin(a), z + 0.009),
-            ),
-            b.cylinder(0.0025 * size, p(x * cos(a), x * sin(a), z + 0.007), p(x * cos(a), x * sin(a), 0.375)),
-            ball(r * size, p(x * cos(a), x * sin(a), 0.38)),
+            p.tube(0.014, 0.0075, z, z + 0.018),
+            p.beam(0.005, 0.005, (0.009 * cos(a), 0.009 * sin(a), z + 0.009), (x * cos(a), x * sin(a), z + 0.009)),
+            p.cylinder(0.0025, (x * cos(a), x * sin(a), z + 0.007), (x * cos(a), x * sin(a), 0.375)),
+            p.ball(r, (x * cos(a), x * sin(a), 0.38)),
             look="brass",
         )
         b.spin(f"planet_{k}", "base", Z, p(0, 0, 0))
@@ -280,36 +263,23 @@ def orrery(b: ObjectBuilder, number: int, size: float) -> None:
 @kind(words="slotted link mechanism", radius=(0.03, 0.08))
 def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
     r = radius
-    b.part(
-        "frame",
-        slab((-2.2 * r, 4.2 * r), (0.05 * r, 0.25 * r), 2 * r),
-        slab((3.4 * r, 3.8 * r), (-r, 0.06 * r), 0.35 * r),
-        look="grey steel",
-    )
-    b.bore(
-        "frame",
-        b.cylinder(0.21 * r, (0, -r, 0), (0, r, 0)),
-        slab((2 * r, 5 * r), (-0.87 * r, -0.53 * r), 0.17 * r),
-    )
+    p = b.sized(r)
+    b.part("frame", p.slab((-2.2, 4.2), (0.05, 0.25), 2), p.slab((3.4, 3.8), (-1, 0.06), 0.35), look="grey steel")
+    b.bore("frame", p.cylinder(0.21, (0, -1, 0), (0, 1, 0)), p.slab((2, 5), (-0.87, -0.53), 0.17))
     b.part(
         "crank",
-        b.cylinder(0.18 * r, (0, -0.2 * r, 0), (0, 0.4 * r, 0)),
-        b.cylinder(1.25 * r, (0, -0.3 * r, 0), (0, -0.02 * r, 0)),
-        b.cylinder(0.15 * r, (0, -0.54 * r, r), (0, -0.25 * r, r)),
-        b.cylinder(0.09 * r, (0, -0.75 * r, r), (0, -0.5 * r, r)),
+        p.cylinder(0.18, (0, -0.2, 0), (0, 0.4, 0)),
+        p.cylinder(1.25, (0, -0.3, 0), (0, -0.02, 0)),
+        p.cylinder(0.15, (0, -0.54, 1), (0, -0.25, 1)),
+        p.cylinder(0.09, (0, -0.75, 1), (0, -0.5, 1)),
         look="red steel",
     )
     b.spin("crank", "frame", -Y, (0, 0, 0))
-    b.part(
-        "yoke",
-        slab(0.4 * r, (-0.8 * r, -0.55 * r), 1.5 * r),
-        slab((0.3 * r, 5 * r), (-0.85 * r, -0.55 * r), 0.15 * r),
-        look="metal",
-    )
-    b.cut("yoke", slab(0.18 * r, (-2 * r, 0), 1.25 * r))
+    b.part("yoke", p.slab(0.4, (-0.8, -0.55), 1.5), p.slab((0.3, 5), (-0.85, -0.55), 0.15), look="metal")
+    b.cut("yoke", p.slab(0.18, (-2, 0), 1.25))
     b.slide("yoke", "frame", X, r, lower=-r)
-    b.part("slider", slab(0.165 * r, (-0.78 * r, -0.57 * r), (0.8 * r, 1.2 * r)), look="brass")
-    b.cut("slider", b.cylinder(0.105 * r, (0, -r, r), (0, 0, r)))
+    b.part("slider", p.slab(0.165, (-0.78, -0.57), (0.8, 1.2)), look="brass")
+    b.cut("slider", p.cylinder(0.105, (0, -1, 1), (0, 0, 1)))
     b.slide("slider", "yoke", -Z, 2.01 * r, lower=-0.01 * r)
     b.close("slider", "crank", (0, -0.68 * r, r))
 
@@ -357,31 +327,32 @@ def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
 @kind(words="worm drive, worm and wheel", radius=(0.03, 0.08))
 def worm_gear(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     b.part(
         "frame",
-        slab(1.5 * r, (0.45 * r, 0.65 * r), (-2.2 * r, 1.4 * r)),
-        b.cylinder(0.2 * r, (0, -0.4 * r, 0), (0, 0.5 * r, 0)),
-        [box((s * 1.3 * r, -0.3 * r, -1.75 * r), (s * 1.5 * r, 0.5 * r, -1.2 * r)) for s in (-1, 1)],
+        p.slab(1.5, (0.45, 0.65), (-2.2, 1.4)),
+        p.cylinder(0.2, (0, -0.4, 0), (0, 0.5, 0)),
+        [p.box((s * 1.3, -0.3, -1.75), (s * 1.5, 0.5, -1.2)) for s in (-1, 1)],
         look="grey steel",
     )
-    b.bore("frame", b.cylinder(0.13 * r, (-2 * r, 0, -1.45 * r), (2 * r, 0, -1.45 * r)))
+    b.bore("frame", p.cylinder(0.13, (-2, 0, -1.45), (2, 0, -1.45)))
     b.part(
         "wheel",
-        b.cylinder(0.95 * r, (0, -0.25 * r, 0), (0, 0.25 * r, 0)),
+        p.cylinder(0.95, (0, -0.25, 0), (0, 0.25, 0)),
         [
             beam(0.08 * r, 0.5 * r, (0, 0, 0), (1.02 * r * cos(a), 0, 1.02 * r * sin(a)), Y)
             for a in [6.28318 * k / 24 for k in range(24)]
         ],
         look="brass",
     )
-    b.cut("wheel", b.cylinder(0.22 * r, (0, -r, 0), (0, r, 0)))
+    b.cut("wheel", p.cylinder(0.22, (0, -1, 0), (0, 1, 0)))
     b.spin("wheel", "frame", -Y, (0, 0, 0))
     b.part(
         "worm",
-        b.cylinder(0.11 * r, (-2 * r, 0, -1.45 * r), (1.5 * r, 0, -1.45 * r)),
-        b.cylinder(0.3 * r, (-1.1 * r, 0, -1.45 * r), (1.1 * r, 0, -1.45 * r)),
-        [b.torus(0.34 * r, 0.06 * r, (x * r, 0, -1.45 * r), X) for x in (-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9)],
-        b.cylinder(0.3 * r, (-2.3 * r, 0, -1.45 * r), (-1.9 * r, 0, -1.45 * r)),
+        p.cylinder(0.11, (-2, 0, -1.45), (1.5, 0, -1.45)),
+        p.cylinder(0.3, (-1.1, 0, -1.45), (1.1, 0, -1.45)),
+        [p.torus(0.34, 0.06, (x, 0, -1.45), X) for x in (-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9)],
+        p.cylinder(0.3, (-2.3, 0, -1.45), (-1.9, 0, -1.45)),
         look="steel",
     )
     b.spin("worm", "frame", X, (0, 0, -1.45 * r))
@@ -391,24 +362,25 @@ def worm_gear(b: ObjectBuilder, radius: float) -> None:
 @kind(words="bevel gear, right angle gearbox, angle drive", radius=(0.03, 0.08))
 def bevel_gears(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     b.part(
         "frame",
-        slab((-1.6 * r, 1.2 * r), 1.2 * r, (-2 * r, -1.8 * r)),
-        slab((-1.8 * r, -1.6 * r), 1.2 * r, (-2 * r, 0.9 * r)),
-        b.cylinder(0.2 * r, -1.81 * r, -r),
-        b.cylinder(0.2 * r, (-1.61 * r, 0, 0), (-r, 0, 0)),
+        p.slab((-1.6, 1.2), 1.2, (-2, -1.8)),
+        p.slab((-1.8, -1.6), 1.2, (-2, 0.9)),
+        p.cylinder(0.2, -1.81, -1),
+        p.cylinder(0.2, (-1.61, 0, 0), (-1, 0, 0)),
         look="grey steel",
     )
-    b.part("gear_0", b.cone(0.95 * r, 0.45 * r, -r, -0.5 * r), b.cylinder(0.35 * r, -1.5 * r, -0.99 * r), look="brass")
-    b.cut("gear_0", b.cylinder(0.22 * r, -3 * r, -0.95 * r))
+    b.part("gear_0", p.cone(0.95, 0.45, -1, -0.5), p.cylinder(0.35, -1.5, -0.99), look="brass")
+    b.cut("gear_0", p.cylinder(0.22, -3, -0.95))
     b.spin("gear_0", "frame", Z, (0, 0, 0))
     b.part(
         "gear_1",
         b.cone(0.95 * r, 0.45 * r, (-r - 0.03 * r, 0, 0), (-0.53 * r, 0, 0)),
-        b.cylinder(0.35 * r, (-1.5 * r, 0, 0), (-r, 0, 0)),
+        p.cylinder(0.35, (-1.5, 0, 0), (-1, 0, 0)),
         look="brass",
     )
-    b.cut("gear_1", b.cylinder(0.22 * r, (-3 * r, 0, 0), (-0.95 * r, 0, 0)))
+    b.cut("gear_1", p.cylinder(0.22, (-3, 0, 0), (-0.95, 0, 0)))
     b.spin("gear_1", "frame", X, (0, 0, 0))
     b.follow("gear_1", "gear_0", -1)
 
@@ -462,25 +434,26 @@ def planetary_gear(b: ObjectBuilder, radius: float, number: int) -> None:
 def cam_follower(b: ObjectBuilder, radius: float) -> None:
     """The cam lifts the follower by contact alone, and its weight brings it back; no joint couples them."""
     r = radius
+    p = b.sized(r)
     b.part(
         "frame",
-        slab(2 * r, 0.5 * r, (-2 * r, -1.8 * r)),
-        [slab(0.4 * r, (s * 0.4 * r, s * 0.6 * r), (-1.81 * r, 0.4 * r)) for s in (-1, 1)],
-        [slab((s * 1.8 * r, s * 2 * r), 0.4 * r, (-1.81 * r, 3.4 * r)) for s in (-1, 1)],
-        slab(2 * r, 0.4 * r, (3.1 * r, 3.4 * r)),
+        p.slab(2, 0.5, (-2, -1.8)),
+        [p.slab(0.4, (s * 0.4, s * 0.6), (-1.81, 0.4)) for s in (-1, 1)],
+        [p.slab((s * 1.8, s * 2), 0.4, (-1.81, 3.4)) for s in (-1, 1)],
+        p.slab(2, 0.4, (3.1, 3.4)),
         look="wood",
     )
-    b.bore("frame", b.cylinder(0.17 * r, (0, -r, 0), (0, r, 0)), b.cylinder(0.17 * r, 3 * r, 4 * r))
+    b.bore("frame", p.cylinder(0.17, (0, -1, 0), (0, 1, 0)), p.cylinder(0.17, 3, 4))
     b.part(
         "cam",
-        b.cylinder(r, (0, -0.25 * r, 0.3 * r), (0, 0.25 * r, 0.3 * r)),
-        b.cylinder(0.14 * r, (0, -1.2 * r, 0), (0, 0.7 * r, 0)),
-        beam(0.2 * r, 0.15 * r, (0, -1.15 * r, 0), (r, -1.15 * r, 0), Y),
-        b.cylinder(0.12 * r, (0.95 * r, -1.8 * r, 0), (0.95 * r, -1.1 * r, 0)),
+        p.cylinder(1, (0, -0.25, 0.3), (0, 0.25, 0.3)),
+        p.cylinder(0.14, (0, -1.2, 0), (0, 0.7, 0)),
+        p.beam(0.2, 0.15, (0, -1.15, 0), (1, -1.15, 0), Y),
+        p.cylinder(0.12, (0.95, -1.8, 0), (0.95, -1.1, 0)),
         look="red steel",
     )
     b.spin("cam", "frame", -Y, (0, 0, 0))
-    b.part("follower", b.cylinder(0.5 * r, 1.33 * r, 1.5 * r), b.cylinder(0.14 * r, 1.4 * r, 4.2 * r), look="metal")
+    b.part("follower", p.cylinder(0.5, 1.33, 1.5), p.cylinder(0.14, 1.4, 4.2), look="metal")
     b.slide("follower", "frame", Z, 0.9 * r)
 
 
@@ -493,16 +466,17 @@ def cam_follower(b: ObjectBuilder, radius: float) -> None:
 def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
     """The teeth lift the pawl by contact alone, and its weight brings it back; no joint couples them."""
     r = radius
+    p = b.sized(r)
     b.part(
         "plate",
-        box((-1.3 * r, 0.03 * r, -1.3 * r), (1.5 * r, 0.2 * r, 1.9 * r)),
-        b.cylinder(0.15 * r, (0, -0.5 * r, 0), (0, 0.05 * r, 0)),
-        b.cylinder(0.08 * r, (0.9 * r, -0.4 * r, 1.3 * r), (0.9 * r, 0.05 * r, 1.3 * r)),
+        p.box((-1.3, 0.03, -1.3), (1.5, 0.2, 1.9)),
+        p.cylinder(0.15, (0, -0.5, 0), (0, 0.05, 0)),
+        p.cylinder(0.08, (0.9, -0.4, 1.3), (0.9, 0.05, 1.3)),
         look="grey steel",
     )
     b.part(
         "wheel",
-        b.cylinder(0.85 * r, (0, -0.3 * r, 0), (0, -0.01 * r, 0)),
+        p.cylinder(0.85, (0, -0.3, 0), (0, -0.01, 0)),
         [
             prism(
                 [
@@ -518,12 +492,12 @@ def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
         ],
         look="brass",
     )
-    b.cut("wheel", b.cylinder(0.17 * r, (0, -r, 0), (0, r, 0)))
+    b.cut("wheel", p.cylinder(0.17, (0, -1, 0), (0, 1, 0)))
     b.spin("wheel", "plate", Y, (0, 0, 0))
     b.part(
         "pawl",
-        beam(0.14 * r, 0.2 * r, (0.9 * r, -0.15 * r, 1.3 * r), (0.1 * r, -0.15 * r, 1.25 * r), Y),
-        b.cylinder(0.16 * r, (0.9 * r, -0.25 * r, 1.3 * r), (0.9 * r, -0.05 * r, 1.3 * r)),
+        p.beam(0.14, 0.2, (0.9, -0.15, 1.3), (0.1, -0.15, 1.25), Y),
+        p.cylinder(0.16, (0.9, -0.25, 1.3), (0.9, -0.05, 1.3)),
         look="red steel",
     )
     b.cut("pawl", b.cylinder(0.095 * r, (0.9 * r, -1, 1.3 * r), (0.9 * r, 1, 1.3 * r)))
@@ -533,30 +507,31 @@ def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
 @kind(words="cardan joint, u joint, hooke joint", radius=(0.015, 0.05))
 def universal_joint(b: ObjectBuilder, radius: float) -> None:
     r = radius
+    p = b.sized(r)
     b.part(
         "yoke_0",
-        b.cylinder(0.5 * r, -5 * r, -2 * r),
-        slab(1.4 * r, 0.5 * r, (-2.3 * r, -2 * r)),
-        [slab((s * 1.1 * r, s * 1.4 * r), 0.5 * r, (-2.1 * r, 0.5 * r)) for s in (-1, 1)],
+        p.cylinder(0.5, -5, -2),
+        p.slab(1.4, 0.5, (-2.3, -2)),
+        [p.slab((s * 1.1, s * 1.4), 0.5, (-2.1, 0.5)) for s in (-1, 1)],
         look="steel",
     )
-    b.bore("yoke_0", b.cylinder(0.24 * r, (-2 * r, 0, 0), (2 * r, 0, 0)))
+    b.bore("yoke_0", p.cylinder(0.24, (-2, 0, 0), (2, 0, 0)))
     b.part(
         "cross",
-        b.cylinder(0.2 * r, (-1.4 * r, 0, 0), (1.4 * r, 0, 0)),
-        b.cylinder(0.2 * r, (0, -1.4 * r, 0), (0, 1.4 * r, 0)),
-        ball(0.45 * r, (0, 0, 0)),
+        p.cylinder(0.2, (-1.4, 0, 0), (1.4, 0, 0)),
+        p.cylinder(0.2, (0, -1.4, 0), (0, 1.4, 0)),
+        p.ball(0.45, (0, 0, 0)),
         look="black steel",
     )
     b.hinge("cross", "yoke_0", X, (0, 0, 0), 0.6, lower=-0.6)
     b.part(
         "yoke_1",
-        b.cylinder(0.5 * r, 2 * r, 5 * r),
-        slab(0.5 * r, 1.4 * r, (2 * r, 2.3 * r)),
-        [slab(0.5 * r, (s * 1.1 * r, s * 1.4 * r), (-0.5 * r, 2.1 * r)) for s in (-1, 1)],
+        p.cylinder(0.5, 2, 5),
+        p.slab(0.5, 1.4, (2, 2.3)),
+        [p.slab(0.5, (s * 1.1, s * 1.4), (-0.5, 2.1)) for s in (-1, 1)],
         look="steel",
     )
-    b.cut("yoke_1", b.cylinder(0.24 * r, (0, -2 * r, 0), (0, 2 * r, 0)))
+    b.cut("yoke_1", p.cylinder(0.24, (0, -2, 0), (0, 2, 0)))
     b.hinge("yoke_1", "cross", Y, (0, 0, 0), 0.6, lower=-0.6)
 
 
@@ -615,30 +590,24 @@ def cart_pole(b: ObjectBuilder, length: float) -> None:
 
 @kind(words="rotary pendulum, rotary inverted pendulum", size=(0.8, 1.3))
 def furuta_pendulum(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "base",
-        b.cylinder(0.08 * size, p(0, 0, 0), p(0, 0, 0.02)),
-        b.cylinder(0.03 * size, p(0, 0, 0.01), p(0, 0, 0.3)),
-        b.cylinder(0.01 * size, p(0, 0, 0.29), p(0, 0, 0.34)),
-        look="metal",
-    )
+    p = b.sized(size)
+    b.part("base", p.cylinder(0.08, 0, 0.02), p.cylinder(0.03, 0.01, 0.3), p.cylinder(0.01, 0.29, 0.34), look="metal")
     b.part(
         "arm",
-        b.tube(0.025 * size, 0.0125 * size, p(0, 0, 0.305), p(0, 0, 0.335)),
-        beam(0.016 * size, 0.016 * size, p(0.015, 0, 0.32), p(0.18, 0, 0.32)),
-        b.cylinder(0.006 * size, p(0.17, 0, 0.32), p(0.22, 0, 0.32)),
+        p.tube(0.025, 0.0125, 0.305, 0.335),
+        p.beam(0.016, 0.016, (0.015, 0, 0.32), (0.18, 0, 0.32)),
+        p.cylinder(0.006, (0.17, 0, 0.32), (0.22, 0, 0.32)),
         look="red metal",
     )
     b.spin("arm", "base", Z, p(0, 0, 0))
     b.part(
         "pendulum",
-        beam(0.012 * size, 0.008 * size, p(0.21, 0, 0.32), p(0.21, 0, 0.1), X),
-        b.cylinder(0.013 * size, p(0.202, 0, 0.32), p(0.218, 0, 0.32)),
-        b.cylinder(0.022 * size, p(0.2, 0, 0.09), p(0.22, 0, 0.09)),
+        p.beam(0.012, 0.008, (0.21, 0, 0.32), (0.21, 0, 0.1), X),
+        p.cylinder(0.013, (0.202, 0, 0.32), (0.218, 0, 0.32)),
+        p.cylinder(0.022, (0.2, 0, 0.09), (0.22, 0, 0.09)),
         look="blue metal",
     )
-    b.cut("pendulum", b.cylinder(0.0078 * size, p(0, 0, 0.32), p(1, 0, 0.32)))
+    b.cut("pendulum", p.cylinder(0.0078, (0, 0, 0.32), (1, 0, 0.32)))
     b.spin("pendulum", "arm", X, p(0, 0, 0.32))
 
 
@@ -679,27 +648,22 @@ def ball_and_plate(b: ObjectBuilder, width: float) -> None:
 
 @kind(words="flyball governor, watt governor", size=(0.8, 1.3))
 def centrifugal_governor(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "base",
-        b.cylinder(0.1 * size, p(0, 0, 0), p(0, 0, 0.03)),
-        b.cylinder(0.012 * size, p(0, 0, 0.02), p(0, 0, 0.08)),
-        look="black steel",
-    )
+    p = b.sized(size)
+    b.part("base", p.cylinder(0.1, 0, 0.03), p.cylinder(0.012, 0.02, 0.08), look="black steel")
     b.part(
         "spindle",
-        b.cylinder(0.02 * size, p(0, 0, 0.081), p(0, 0, 0.1)),
-        b.cylinder(0.009 * size, p(0, 0, 0.09), p(0, 0, 0.4)),
-        [box(p(-0.008, s * 0.006, 0.36), p(0.008, s * 0.03, 0.38)) for s in (-1, 1)],
+        p.cylinder(0.02, 0.081, 0.1),
+        p.cylinder(0.009, 0.09, 0.4),
+        [p.slab(0.008, (s * 0.006, s * 0.03), (0.36, 0.38)) for s in (-1, 1)],
         look="brass",
     )
-    b.cut("spindle", [box(p(-0.0045, s * 0.015, 0.3), p(0.0045, s * 0.05, 0.4)) for s in (-1, 1)])
+    b.cut("spindle", [p.slab(0.0045, (s * 0.015, s * 0.05), (0.3, 0.4)) for s in (-1, 1)])
     b.spin("spindle", "base", Z, p(0, 0, 0))
     for k, s in enumerate((-1, 1)):
         b.part(
             f"arm_{k}",
-            beam(0.007 * size, 0.007 * size, p(0, s * 0.025, 0.37), p(0, s * 0.1, 0.22), X),
-            ball(0.025 * size, p(0, s * 0.105, 0.21)),
+            p.beam(0.007, 0.007, (0, s * 0.025, 0.37), (0, s * 0.1, 0.22), X),
+            p.ball(0.025, (0, s * 0.105, 0.21)),
             look="brass",
         )
         b.hinge(f"arm_{k}", "spindle", s * X, p(0, s * 0.025, 0.37), 0.6, lower=-0.1)
@@ -760,44 +724,30 @@ def lead_screw(b: ObjectBuilder, length: float) -> None:
 
 @kind(words="oil pump jack, oil pump, nodding donkey", size=(0.5, 1.5))
 def pump_jack(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        box(p(-1.2, -0.3, 0), p(1.3, 0.3, 0.1)),
-        [
-            beam(0.08 * size, 0.08 * size, p(x, s * 0.25, 0.05), p(0, s * 0.13, 1.5), Y)
-            for x in (-0.4, 0.4)
-            for s in (-1, 1)
-        ],
-        [box(p(-0.07, s * 0.09, 1.42), p(0.07, s * 0.15, 1.6)) for s in (-1, 1)],
-        box(p(0.7, -0.15, 0.09), p(1.2, 0.15, 0.6)),
+        p.slab((-1.2, 1.3), 0.3, (0, 0.1)),
+        [p.beam(0.08, 0.08, (x, s * 0.25, 0.05), (0, s * 0.13, 1.5), Y) for x in (-0.4, 0.4) for s in (-1, 1)],
+        [p.slab(0.07, (s * 0.09, s * 0.15), (1.42, 1.6)) for s in (-1, 1)],
+        p.slab((0.7, 1.2), 0.15, (0.09, 0.6)),
         look="blue steel",
     )
     b.part(
         "beam",
-        box(p(-1.2, -0.07, 1.54), p(1, 0.07, 1.68)),
-        box(p(-0.06, -0.065, 1.46), p(0.06, 0.065, 1.55)),
-        prism(
-            [
-                (-1.2 * size, 1.3 * size),
-                (-1.05 * size, 1.25 * size),
-                (-1 * size, 1.75 * size),
-                (-1.2 * size, 1.8 * size),
-            ],
-            p(0, 0, 0),
-            0.14 * size,
-            "y",
-        ),
+        p.slab((-1.2, 1), 0.07, (1.54, 1.68)),
+        p.slab(0.06, 0.065, (1.46, 1.55)),
+        p.prism([(-1.2, 1.3), (-1.05, 1.25), (-1, 1.75), (-1.2, 1.8)], (0, 0, 0), 0.14, "y"),
         look="yellow steel",
     )
     b.hinge("beam", "base", Y, p(0, 0, 1.5), 0.25, lower=-0.25)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"crank_{k}",
-            b.cylinder(0.07 * size, p(0.95, s * 0.152, 0.45), p(0.95, s * 0.22, 0.45)),
-            box(p(0.87, s * 0.16, 0.14), p(1.03, s * 0.22, 0.5))
+            p.cylinder(0.07, (0.95, s * 0.152, 0.45), (0.95, s * 0.22, 0.45)),
+            p.box((0.87, s * 0.16, 0.14), (1.03, s * 0.22, 0.5))
             if k < 0
-            else beam(0.14 * size, 0.06 * size, p(0.95, s * 0.19, 0.45), p(0.95, s * 0.19, 0.76), Y),
+            else p.beam(0.14, 0.06, (0.95, s * 0.19, 0.45), (0.95, s * 0.19, 0.76), Y),
             look="black steel",
         )
         b.spin(f"crank_{k}", "base", Y, p(0.95, 0, 0.45))

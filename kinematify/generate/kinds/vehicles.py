@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import axles, case, caster, rotor, wheel
 from kinematify.generate.library.panels import grip, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, slab, vector
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.library.builder import ObjectBuilder
-    from kinematify.generate.procedural.solids import Point
+from kinematify.generate.procedural.solids import Point, X, Y, Z, beam, block, box, slab, vector
 
 
 def _windows(d: ObjectBuilder, lower: Point, upper: Point) -> Sequence[Manifold]:
@@ -43,11 +36,7 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
         "body",
         slab(length / 2, width / 2, (radius, radius + 0.55)),
         slab((-0.45 * length, 0.15 * length), 0.45 * width, (radius + 0.5, radius + 1.1)),
-        _windows(
-            b,
-            (-0.45 * length, -0.45 * width, radius + 0.68),
-            (0.15 * length, 0.45 * width, radius + 1.0),
-        ),
+        _windows(b, (-0.45 * length, -0.45 * width, radius + 0.68), (0.15 * length, 0.45 * width, radius + 1.0)),
         look="steel",
     )
     axles(b, "body", (-0.32 * length, 0.32 * length), width / 2, radius, b.draw(0.15, 0.25), b.pick(0.01, 0.05))
@@ -322,19 +311,15 @@ def shopping_cart(b: ObjectBuilder, length: float, width: float, height: float) 
 @kind(words="speed boat, speedboat, outboard boat, motorboat, power boat", length=(3.0, 7.0))
 def motor_boat(b: ObjectBuilder, length: float) -> None:
     """An outboard that steers, its propeller, a steering wheel, a hatch."""
+    p = b.sized(length)
     b.part(
         "hull",
-        prism(
-            [(-0.5 * length, 0), (0.4 * length, 0), (0.5 * length, 0.18 * length), (-0.5 * length, 0.18 * length)],
-            (0, 0, 0),
-            0.36 * length,
-            "y",
-        ),
-        slab((0, 0.1 * length), 0.12 * length, (0.17 * length, 0.28 * length)),
+        p.prism([(-0.5, 0), (0.4, 0), (0.5, 0.18), (-0.5, 0.18)], (0, 0, 0), 0.36, "y"),
+        p.slab((0, 0.1), 0.12, (0.17, 0.28)),
     )
     g = b.gap(0.05 * length) + 0.001
     x = -0.52 * length
-    b.part("hull", slab((-0.515 * length, -0.499 * length), 0.008 * length, (0.14 * length, 0.18 * length)))
+    b.part("hull", p.slab((-0.515, -0.499), 0.008, (0.14, 0.18)))
     b.part(
         "outboard",
         slab((x - 0.1 * length, x), 0.04 * length, (0.12 * length, 0.26 * length)),
@@ -453,10 +438,7 @@ def wind_turbine(b: ObjectBuilder, height: float) -> None:
     """A nacelle that yaws on a mast and a rotor with three blades."""
     b.part("mast", b.cone(0.04 * height, 0.025 * height, 0, height), look="steel")
     g = b.gap(0.02 * height)
-    b.part(
-        "nacelle",
-        slab(0.03 * height, (-0.06 * height, 0.12 * height), (height + g, height + 0.06 * height)),
-    )
+    b.part("nacelle", slab(0.03 * height, (-0.06 * height, 0.12 * height), (height + g, height + 0.06 * height)))
     b.spin("nacelle", "mast", Z, (0, 0, height))
     rotor(
         b, "rotor", "nacelle", (0, -0.06 * height, height + 0.03 * height), -Y, 0.6 * height, b.count(2, 4), wide=0.08

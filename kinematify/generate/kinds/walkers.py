@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from math import asin, cos, pi, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
 from kinematify.generate.kinds.limbs import leg_solids, limb_solids
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
-from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod, slab, vector
-
-if TYPE_CHECKING:
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.procedural.solids import Point, ball, box, cylinder, hull, off, rod, slab, vector
+from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
@@ -114,19 +109,19 @@ def hexapod(
     outwards = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
     lengths = (femur, tibia)
     high = lengths[1] - 1.5 * joint_radius - clearance
-    its_ring = max(0.5 * trunk, 3.5 * joint_radius / sin(pi / legs))
+    ring = max(0.5 * trunk, 3.5 * joint_radius / sin(pi / legs))
     plate = ((0, 0, high - 1.4 * joint_radius), (0, 0, high - 0.2 * joint_radius))
     w.body(
         "trunk",
-        cylinder(its_ring + 0.4 * joint_radius, *plate),
-        ball(0.5 * its_ring, (0, 0, high - 0.2 * joint_radius)).trim_by_plane((0, 0, 1), high - joint_radius),
+        cylinder(ring + 0.4 * joint_radius, *plate),
+        ball(0.5 * ring, (0, 0, high - 0.2 * joint_radius)).trim_by_plane((0, 0, 1), high - joint_radius),
     )
     for k in range(legs):
         angle = 2.0 * pi * (k + 0.5) / legs
         cosine = cos(angle)
         sine = sin(angle)
         turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-        place = at((its_ring * cosine, its_ring * sine, high), turn @ outwards)
+        place = at((ring * cosine, ring * sine, high), turn @ outwards)
         # A coxa on an upright joint, a femur that reaches out and a tibia that reaches down.
         leg = f"leg_{k + 1}"
         lengths_2 = (femur, tibia)
@@ -187,8 +182,7 @@ def humanoid(
     clearance: float,
 ) -> None:
     """Robots with legs, arms and a head. They look along x, as robots do."""
-    # the_sole: of the ankles over the floor, in joint radii
-    the_sole = 1.6
+    the_sole = 1.6  # of the ankles over the floor, in joint radii
     # Half the distance of the shoulders' pivots [m].
     shoulder = max(0.5 * shoulders, 8.5 * joint_radius)
 
@@ -325,8 +319,7 @@ def humanoid(
 )
 def snake(w: Workshop, segments: int, radius: float, segment: float, clearance: float) -> None:
     """Snake robots: segments on hinges that turn about the upright and across it in turn."""
-    # the_size: Radius of a hinge beside that of the body.
-    the_size = 0.45
+    the_size = 0.45  # radius of a hinge beside that of the body
     length = segment
     tight = min(clearance, 0.03 * radius)
     size = the_size * radius
@@ -338,12 +331,12 @@ def snake(w: Workshop, segments: int, radius: float, segment: float, clearance: 
         first = k == 0
         last = k + 1 == segments
         name = f"segment_{k + 1}"
-        its_body = cylinder(
+        body = cylinder(
             radius,
             (start + (0.0 if first else 1.6 * space + 0.5 * radius), 0, radius),
             (end - (0.0 if last else 1.6 * space + 0.5 * radius), 0, radius),
         )
-        w.body(name, its_body)
+        w.body(name, body)
         if not first:
             # Join segment k to segment k + 1 at x: a fork on the one, a tongue on the other.
             upright = k % 2 == 0

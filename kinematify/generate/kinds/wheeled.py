@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import choice, kind, whole
 from kinematify.generate.library.mechanisms import caster, in_fork, legs, wheel
 from kinematify.generate.library.panels import leaf, seam
 from kinematify.generate.procedural.solids import X, Y, Z, box, slab
-
-if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
 
 
 @kind(
@@ -149,8 +144,7 @@ def tilting_screen(
         b.part("foot", slab(radius, (y, y + radius), (0, post + 0.2 * height)))
         g = b.gap(radius)
         b.part(
-            "screen",
-            slab(2.2 * radius, (thickness - 0.002, y + 2.2 * radius), (post - 3 * radius, post + 3 * radius)),
+            "screen", slab(2.2 * radius, (thickness - 0.002, y + 2.2 * radius), (post - 3 * radius, post + 3 * radius))
         )
         b.cut(
             "screen",

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
+from manifold3d import Manifold
+
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, caster, crank, knob, lever, wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, slab
-
-if TYPE_CHECKING:
-    from manifold3d import Manifold
-
-    from kinematify.generate.library.builder import ObjectBuilder
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab
 
 
 @kind(words="socket wrench, torque wrench, ratchet spanner", length=(0.18, 0.3))
@@ -41,27 +37,27 @@ def ratchet_wrench(b: ObjectBuilder, length: float) -> None:
 
 @kind(words="tube cutter", size=(0.9, 1.3))
 def pipe_cutter(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
-        box(p(-0.012, -0.01, 0), p(0.06, 0.01, 0.012)),
-        box(p(-0.012, -0.01, 0), p(-0.002, 0.01, 0.06)),
-        [b.cylinder(0.006 * size, p(x, -0.009, 0.016), p(x, 0.009, 0.016)) for x in (0.035, 0.052)],
-        box(p(-0.024, -0.01, 0), p(-0.01, 0.01, 0.03)),
+        p.slab((-0.012, 0.06), 0.01, (0, 0.012)),
+        p.slab((-0.012, -0.002), 0.01, (0, 0.06)),
+        [p.cylinder(0.006, (x, -0.009, 0.016), (x, 0.009, 0.016)) for x in (0.035, 0.052)],
+        p.slab((-0.024, -0.01), 0.01, (0, 0.03)),
         look="blue metal",
     )
-    b.bore("frame", b.cylinder(0.0052 * size, p(-0.05, 0, 0.015), p(0, 0, 0.015)))
+    b.bore("frame", p.cylinder(0.0052, (-0.05, 0, 0.015), (0, 0, 0.015)))
     b.part(
         "screw",
-        b.cylinder(0.004 * size, p(-0.05, 0, 0.015), p(-0.003, 0, 0.015)),
-        b.cylinder(0.012 * size, p(-0.065, 0, 0.015), p(-0.045, 0, 0.015)),
+        p.cylinder(0.004, (-0.05, 0, 0.015), (-0.003, 0, 0.015)),
+        p.cylinder(0.012, (-0.065, 0, 0.015), (-0.045, 0, 0.015)),
         look="steel",
     )
     b.spin("screw", "frame", X, p(0, 0, 0.015))
     b.part(
         "jaw",
-        box(p(0.001, -0.01, 0.0125), p(0.018, 0.01, 0.04)),
-        b.cylinder(0.01 * size, p(0.02, -0.002, 0.028), p(0.02, 0.002, 0.028)),
+        p.slab((0.001, 0.018), 0.01, (0.0125, 0.04)),
+        p.cylinder(0.01, (0.02, -0.002, 0.028), (0.02, 0.002, 0.028)),
         look="steel",
     )
     b.slide("jaw", "frame", X, 0.003)
@@ -69,25 +65,25 @@ def pipe_cutter(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="quick clamp", size=(0.9, 1.4))
 def toggle_clamp(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        box(p(-0.03, -0.02, 0), p(0.03, 0.02, 0.004)),
-        [box(p(-0.025, s * 0.01, 0.003), p(0.02, s * 0.014, 0.04)) for s in (-1, 1)],
+        p.slab(0.03, 0.02, (0, 0.004)),
+        [p.box((-0.025, s * 0.01, 0.003), (0.02, s * 0.014, 0.04)) for s in (-1, 1)],
         look="steel",
     )
     b.part(
         "arm",
-        beam(0.016 * size, 0.008 * size, p(-0.01, 0, 0.032), p(0.07, 0, 0.032)),
-        b.cylinder(0.004 * size, p(0.065, 0, 0.006), p(0.065, 0, 0.034)),
-        b.cylinder(0.007 * size, p(0.065, 0, 0.004), p(0.065, 0, 0.01)),
+        p.beam(0.016, 0.008, (-0.01, 0, 0.032), (0.07, 0, 0.032)),
+        p.cylinder(0.004, (0.065, 0, 0.006), (0.065, 0, 0.034)),
+        p.cylinder(0.007, (0.065, 0, 0.004), (0.065, 0, 0.01)),
         look="steel",
     )
     b.hinge("arm", "base", -Y, p(0.012, 0, 0.032), 1.3)
     b.part(
         "handle",
-        beam(0.014 * size, 0.008 * size, p(-0.018, 0, 0.016), p(-0.1, 0, 0.045)),
-        b.rod(0.009 * size, p(-0.07, 0, 0.034), p(-0.11, 0, 0.048)),
+        p.beam(0.014, 0.008, (-0.018, 0, 0.016), (-0.1, 0, 0.045)),
+        p.rod(0.009, (-0.07, 0, 0.034), (-0.11, 0, 0.048)),
         look="red steel",
     )
     b.hinge("handle", "base", Y, p(-0.018, 0, 0.016), 1.2)
@@ -119,90 +115,90 @@ def caulking_gun(b: ObjectBuilder, length: float) -> None:
 
 @kind(words="tacker", size=(0.9, 1.2))
 def staple_gun(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(0, -0.012, 0), p(0.15, 0.012, 0.03)),
-        box(p(0.12, -0.012, 0), p(0.15, 0.012, 0.1)),
-        box(p(0, -0.012, 0), p(0.02, 0.012, 0.075)),
-        box(p(0, -0.012, 0.055), p(0.03, 0.012, 0.075)),
-        [box(p(0.11, s * 0.012, 0.08), p(0.15, s * 0.008, 0.125)) for s in (-1, 1)],
+        p.slab((0, 0.15), 0.012, (0, 0.03)),
+        p.slab((0.12, 0.15), 0.012, (0, 0.1)),
+        p.slab((0, 0.02), 0.012, (0, 0.075)),
+        p.slab((0, 0.03), 0.012, (0.055, 0.075)),
+        [p.box((0.11, s * 0.012, 0.08), (0.15, s * 0.008, 0.125)) for s in (-1, 1)],
         look="steel",
     )
-    b.part("lever", beam(0.013 * size, 0.012 * size, p(0.138, 0, 0.113), p(-0.01, 0, 0.14)), look="black steel")
+    b.part("lever", p.beam(0.013, 0.012, (0.138, 0, 0.113), (-0.01, 0, 0.14)), look="black steel")
     b.hinge("lever", "body", -Y, p(0.138, 0, 0.113), 0.12, lower=-0.3)
 
 
 @kind(words="hot air gun", size=(0.9, 1.2))
 def heat_gun(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.035 * size, p(-0.06, 0, 0.16), p(0.1, 0, 0.16)),
-        b.cone(0.033 * size, 0.018 * size, p(0.1, 0, 0.16), p(0.18, 0, 0.16)),
-        beam(0.03 * size, 0.04 * size, p(-0.01, 0, 0.14), p(-0.03, 0, 0), X),
+        p.cylinder(0.035, (-0.06, 0, 0.16), (0.1, 0, 0.16)),
+        p.cone(0.033, 0.018, (0.1, 0, 0.16), (0.18, 0, 0.16)),
+        p.beam(0.03, 0.04, (-0.01, 0, 0.14), (-0.03, 0, 0), X),
         look="orange",
     )
-    b.bore("body", box(p(0.004, -0.007, 0.075), p(0.05, 0.007, 0.13)))
-    b.part("trigger", box(p(0.0105, -0.006, 0.08), p(0.026, 0.006, 0.122)), look="black")
+    b.bore("body", p.slab((0.004, 0.05), 0.007, (0.075, 0.13)))
+    b.part("trigger", p.slab((0.0105, 0.026), 0.006, (0.08, 0.122)), look="black")
     b.slide("trigger", "body", -X, 0.005)
     knob(b, "dial", "body", p(-0.06, 0, 0.16), 0.018 * size, -X, high=0.012 * size, reach=4.5)
 
 
 @kind(words="hand circular saw, plunge saw, track saw", size=(0.9, 1.2))
 def circular_saw(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.05 * size, p(0, 0.02, 0.1), p(0, 0.14, 0.1)),
-        beam(0.03 * size, 0.03 * size, p(0, 0.07, 0.14), p(-0.1, 0.07, 0.2)),
-        beam(0.03 * size, 0.03 * size, p(-0.1, 0.07, 0.2), p(-0.14, 0.07, 0.1)),
-        box(p(-0.05, 0.03, 0.03), p(0.05, 0.1, 0.1)),
-        box(p(-0.14, 0.012, 0.014), p(0.14, 0.12, 0.03)),
+        p.cylinder(0.05, (0, 0.02, 0.1), (0, 0.14, 0.1)),
+        p.beam(0.03, 0.03, (0, 0.07, 0.14), (-0.1, 0.07, 0.2)),
+        p.beam(0.03, 0.03, (-0.1, 0.07, 0.2), (-0.14, 0.07, 0.1)),
+        p.slab(0.05, (0.03, 0.1), (0.03, 0.1)),
+        p.slab(0.14, (0.012, 0.12), (0.014, 0.03)),
         look="green",
     )
-    b.cut("body", box(p(-0.13, -0.02, 0), p(0.13, 0.0115, 0.2)))
+    b.cut("body", p.slab(0.13, (-0.02, 0.0115), (0, 0.2)))
     b.part(
         "blade",
-        b.cylinder(0.085 * size, p(0, 0.001, 0.1), p(0, 0.003, 0.1)),
-        b.cylinder(0.012 * size, p(0, -0.008, 0.1), p(0, 0.011, 0.1)),
+        p.cylinder(0.085, (0, 0.001, 0.1), (0, 0.003, 0.1)),
+        p.cylinder(0.012, (0, -0.008, 0.1), (0, 0.011, 0.1)),
         look="steel",
     )
     b.spin("blade", "body", -Y, p(0, 0, 0.1))
-    b.part("guard", b.cylinder(0.098 * size, p(0, -0.006, 0.1), p(0, 0.0095, 0.1)), look="grey metal")
+    b.part("guard", p.cylinder(0.098, (0, -0.006, 0.1), (0, 0.0095, 0.1)), look="grey metal")
     b.cut(
         "guard",
-        b.cylinder(0.091 * size, p(0, -0.0035, 0.1), p(0, 0.0065, 0.1)),
-        box(p(-0.2, -0.1, 0.1), p(0.2, 0.1, 0.4)),
-        b.cylinder(0.02 * size, p(0, -0.1, 0.1), p(0, 0.1, 0.1)),
-        box(p(-0.2, 0.0062, -0.1), p(0.2, 0.02, 0.3)),
+        p.cylinder(0.091, (0, -0.0035, 0.1), (0, 0.0065, 0.1)),
+        p.slab(0.2, 0.1, (0.1, 0.4)),
+        p.cylinder(0.02, (0, -0.1, 0.1), (0, 0.1, 0.1)),
+        p.slab(0.2, (0.0062, 0.02), (-0.1, 0.3)),
     )
     b.hinge("guard", "body", Y, p(0, 0, 0.1), 1.6)
 
 
 @kind(words="chain saw", size=(0.9, 1.1))
 def chainsaw(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.1, -0.08, 0), p(0.1, 0.08, 0.14)),
-        b.rod(0.012 * size, p(-0.09, 0, 0.13), p(-0.16, 0, 0.2)),
-        b.rod(0.012 * size, p(-0.16, 0, 0.2), p(-0.28, 0, 0.14)),
-        b.rod(0.012 * size, p(-0.28, 0, 0.14), p(-0.26, 0, 0.04)),
-        b.rod(0.012 * size, p(-0.26, 0, 0.04), p(-0.09, 0, 0.04)),
-        box(p(0.09, -0.006, 0.03), p(0.45, 0.006, 0.09)),
-        b.cylinder(0.03 * size, p(0.45, -0.006, 0.06), p(0.45, 0.006, 0.06)),
-        [box(p(0.04, s * 0.06, 0.13), p(0.06, s * 0.07, 0.16)) for s in (-1, 1)],
+        p.slab(0.1, 0.08, (0, 0.14)),
+        p.rod(0.012, (-0.09, 0, 0.13), (-0.16, 0, 0.2)),
+        p.rod(0.012, (-0.16, 0, 0.2), (-0.28, 0, 0.14)),
+        p.rod(0.012, (-0.28, 0, 0.14), (-0.26, 0, 0.04)),
+        p.rod(0.012, (-0.26, 0, 0.04), (-0.09, 0, 0.04)),
+        p.slab((0.09, 0.45), 0.006, (0.03, 0.09)),
+        p.cylinder(0.03, (0.45, -0.006, 0.06), (0.45, 0.006, 0.06)),
+        [p.box((0.04, s * 0.06, 0.13), (0.06, s * 0.07, 0.16)) for s in (-1, 1)],
         look="orange",
     )
-    b.part("brake", box(p(0.055, -0.056, 0.145), p(0.063, 0.056, 0.23)), look="black")
+    b.part("brake", p.slab((0.055, 0.063), 0.056, (0.145, 0.23)), look="black")
     b.hinge("brake", "body", Y, p(0.059, 0, 0.15), 0.5, lower=-0.2)
-    b.bore("body", b.cylinder(0.0085 * size, p(-0.03, -0.1, 0.07), p(-0.03, -0.02, 0.07)))
+    b.bore("body", p.cylinder(0.0085, (-0.03, -0.1, 0.07), (-0.03, -0.02, 0.07)))
     b.part(
         "starter",
-        b.cylinder(0.006 * size, p(-0.03, -0.075, 0.07), p(-0.03, -0.025, 0.07)),
-        b.rod(0.01 * size, p(-0.06, -0.095, 0.07), p(0, -0.095, 0.07)),
-        b.cylinder(0.006 * size, p(-0.03, -0.09, 0.07), p(-0.03, -0.07, 0.07)),
+        p.cylinder(0.006, (-0.03, -0.075, 0.07), (-0.03, -0.025, 0.07)),
+        p.rod(0.01, (-0.06, -0.095, 0.07), (0, -0.095, 0.07)),
+        p.cylinder(0.006, (-0.03, -0.09, 0.07), (-0.03, -0.07, 0.07)),
         look="black",
     )
     b.slide("starter", "body", -Y, 0.04)
@@ -284,22 +280,22 @@ def mechanics_creeper(b: ObjectBuilder, width: float, length: float) -> None:
 
 @kind(walls=40, words="shop crane, floor crane", size=(0.8, 1.1))
 def engine_hoist(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "base",
-        [box(p(s * 0.35 - 0.04, -1.2, 0.1), p(s * 0.35 + 0.04, 0.1, 0.16)) for s in (-1, 1)],
-        box(p(-0.39, 0, 0.1), p(0.39, 0.12, 0.18)),
-        box(p(-0.05, 0.02, 0.15), p(0.05, 0.12, 1.4)),
-        [box(p(s * 0.05, -0.03, 1.4), p(s * 0.065, 0.12, 1.55)) for s in (-1, 1)],
-        box(p(-0.065, 0.02, 1.36), p(0.065, 0.12, 1.41)),
+        [p.box((s * 0.35 - 0.04, -1.2, 0.1), (s * 0.35 + 0.04, 0.1, 0.16)) for s in (-1, 1)],
+        p.slab(0.39, (0, 0.12), (0.1, 0.18)),
+        p.slab(0.05, (0.02, 0.12), (0.15, 1.4)),
+        [p.box((s * 0.05, -0.03, 1.4), (s * 0.065, 0.12, 1.55)) for s in (-1, 1)],
+        p.slab(0.065, (0.02, 0.12), (1.36, 1.41)),
         look="red steel",
     )
-    b.part("boom", box(p(-0.045, -1.1, 1.45), p(0.045, 0.1, 1.53)), look="red steel")
+    b.part("boom", p.slab(0.045, (-1.1, 0.1), (1.45, 1.53)), look="red steel")
     b.hinge("boom", "base", -X, p(0, 0.06, 1.49), 0.5, lower=-0.05)
     b.part(
         "hook",
-        b.cylinder(0.012 * size, p(0, -1, 1.33), p(0, -1, 1.448)),
-        b.torus(0.04 * size, 0.012 * size, p(0, -1, 1.29), X),
+        p.cylinder(0.012, (0, -1, 1.33), (0, -1, 1.448)),
+        p.torus(0.04, 0.012, (0, -1, 1.29), X),
         look="black steel",
     )
     b.spin("hook", "boom", Z, p(0, -1, 0))
@@ -333,7 +329,7 @@ def air_compressor(b: ObjectBuilder, length: float) -> None:
 
 @kind(words="fireplace bellows, hand bellows", size=(0.8, 1.2))
 def bellows(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
 
     def board(end: float, height: float) -> Manifold:
         half = [
@@ -348,8 +344,8 @@ def bellows(b: ObjectBuilder, size: float) -> None:
     b.part(
         "lower_board",
         board(0.12, 0.008),
-        b.cylinder(0.012 * size, p(0, 0.06, 0.012), p(0, 0.13, 0.012)),
-        b.cone(0.006 * size, 0.012 * size, p(0, -0.02, 0.012), p(0, 0.07, 0.012)),
+        p.cylinder(0.012, (0, 0.06, 0.012), (0, 0.13, 0.012)),
+        p.cone(0.006, 0.012, (0, -0.02, 0.012), (0, 0.07, 0.012)),
         look="wood",
     )
     b.part("board", board(0.13, 0.035), look="wood")
@@ -358,15 +354,10 @@ def bellows(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="voltmeter, measuring device, geiger counter", size=(0.9, 1.2))
 def multimeter(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "case",
-        box(p(-0.045, 0, 0), p(0.045, 0.035, 0.18)),
-        box(p(-0.035, -0.002, 0.12), p(0.035, 0.001, 0.165)),
-        look="yellow",
-    )
+    p = b.sized(size)
+    b.part("case", p.slab(0.045, (0, 0.035), (0, 0.18)), p.slab(0.035, (-0.002, 0.001), (0.12, 0.165)), look="yellow")
     knob(b, "dial", "case", p(0, 0, 0.07), 0.025 * size, -Y, high=0.012 * size, reach=5.5)
-    b.part("stand", box(p(-0.03, 0.036, 0.02), p(0.03, 0.04, 0.12)), look="black")
+    b.part("stand", p.slab(0.03, (0.036, 0.04), (0.02, 0.12)), look="black")
     b.hinge("stand", "case", X, p(0, 0.036, 0.12), 0.7)
 
 
@@ -428,31 +419,28 @@ def protractor(b: ObjectBuilder, length: float) -> None:
 
 @kind(words="micrometer screw gauge, outside micrometer, screw gauge", size=(0.9, 1.3))
 def micrometer(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "frame",
         [
-            beam(
-                0.012 * size,
-                0.01 * size,
-                p(0.035 * cos(a), -0.035 * sin(a), 0),
-                p(0.035 * cos(a + 0.55), -0.035 * sin(a + 0.55), 0),
+            p.beam(
+                0.012, 0.01, (0.035 * cos(a), -0.035 * sin(a), 0), (0.035 * cos(a + 0.55), -0.035 * sin(a + 0.55), 0)
             )
             for a in [0.52 * k for k in range(6)]
         ],
-        box(p(0.03, -0.006, -0.006), p(0.045, 0.012, 0.006)),
-        box(p(-0.045, -0.006, -0.006), p(-0.03, 0.012, 0.006)),
-        b.cylinder(0.006 * size, p(0.03, 0.006, 0), p(0.075, 0.006, 0)),
-        b.cylinder(0.003 * size, p(-0.035, 0.006, 0), p(-0.01, 0.006, 0)),
+        p.slab((0.03, 0.045), (-0.006, 0.012), 0.006),
+        p.slab((-0.045, -0.03), (-0.006, 0.012), 0.006),
+        p.cylinder(0.006, (0.03, 0.006, 0), (0.075, 0.006, 0)),
+        p.cylinder(0.003, (-0.035, 0.006, 0), (-0.01, 0.006, 0)),
         look="steel",
     )
-    b.bore("frame", b.cylinder(0.0042 * size, p(0, 0.006, 0), p(0.2, 0.006, 0)))
-    b.part("spindle", b.cylinder(0.0032 * size, p(-0.005, 0.006, 0), p(0.1, 0.006, 0)), look="steel")
+    b.bore("frame", p.cylinder(0.0042, (0, 0.006, 0), (0.2, 0.006, 0)))
+    b.part("spindle", p.cylinder(0.0032, (-0.005, 0.006, 0), (0.1, 0.006, 0)), look="steel")
     b.slide("spindle", "frame", X, 0.03)
     b.part(
         "thimble",
-        b.tube(0.009 * size, 0.0072 * size, p(0.05, 0.006, 0), p(0.085, 0.006, 0)),
-        b.tube(0.009 * size, 0.004 * size, p(0.0855 - 0.001, 0.006, 0), p(0.095, 0.006, 0)),
+        p.tube(0.009, 0.0072, (0.05, 0.006, 0), (0.085, 0.006, 0)),
+        p.tube(0.009, 0.004, (0.0855 - 0.001, 0.006, 0), (0.095, 0.006, 0)),
         look="chrome",
     )
     b.spin("thimble", "spindle", X, p(0, 0.006, 0))
@@ -548,17 +536,17 @@ def jib_crane(b: ObjectBuilder, height: float) -> None:
 
 @kind(words="garden spray gun, shower gun", size=(0.9, 1.2))
 def hose_nozzle(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        b.cylinder(0.014 * size, p(-0.1, 0, 0), p(0.02, 0, 0.06)),
-        b.cylinder(0.014 * size, p(0, 0, 0.06), p(0.06, 0, 0.06)),
-        [box(p(-0.01, s * 0.014, 0.06), p(0.015, s * 0.009, 0.085)) for s in (-1, 1)],
+        p.cylinder(0.014, (-0.1, 0, 0), (0.02, 0, 0.06)),
+        p.cylinder(0.014, (0, 0, 0.06), (0.06, 0, 0.06)),
+        [p.box((-0.01, s * 0.014, 0.06), (0.015, s * 0.009, 0.085)) for s in (-1, 1)],
         look="green",
     )
-    b.part("head", b.cylinder(0.024 * size, p(0.061, 0, 0.06), p(0.09, 0, 0.06)), look="black")
+    b.part("head", p.cylinder(0.024, (0.061, 0, 0.06), (0.09, 0, 0.06)), look="black")
     b.spin("head", "body", X, p(0, 0, 0.06))
-    b.part("lever", beam(0.012 * size, 0.005 * size, p(0.006, 0, 0.081), p(-0.1, 0, 0.055)), look="metal")
+    b.part("lever", p.beam(0.012, 0.005, (0.006, 0, 0.081), (-0.1, 0, 0.055)), look="metal")
     b.hinge("lever", "body", -Y, p(0.006, 0, 0.081), 0.2, lower=-0.1)
 
 
@@ -758,29 +746,29 @@ def garden_roller(b: ObjectBuilder, width: float, radius: float) -> None:
 
 @kind(words="snow thrower, snowblower", size=(0.9, 1.2))
 def snow_blower(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
+    p = b.sized(size)
     b.part(
         "body",
-        box(p(-0.3, -0.5, 0.05), p(0.3, -0.1, 0.5)),
-        box(p(-0.2, -0.12, 0.2), p(0.2, 0.35, 0.55)),
-        b.cylinder(0.07 * size, p(0, -0.2, 0.49), p(0, -0.2, 0.54)),
-        [b.rod(0.014 * size, p(s * 0.2, 0.25, 0.45), p(s * 0.25, 0.8, 0.95)) for s in (-1, 1)],
-        b.rod(0.014 * size, p(-0.25, 0.8, 0.95), p(0.25, 0.8, 0.95)),
-        [b.cylinder(0.02 * size, p(s * 0.19, 0.15, 0.2), p(s * 0.235, 0.15, 0.2)) for s in (-1, 1)],
-        box(p(-0.19, 0.1, 0.15), p(0.19, 0.2, 0.25)),
+        p.slab(0.3, (-0.5, -0.1), (0.05, 0.5)),
+        p.slab(0.2, (-0.12, 0.35), (0.2, 0.55)),
+        p.cylinder(0.07, (0, -0.2, 0.49), (0, -0.2, 0.54)),
+        [p.rod(0.014, (s * 0.2, 0.25, 0.45), (s * 0.25, 0.8, 0.95)) for s in (-1, 1)],
+        p.rod(0.014, (-0.25, 0.8, 0.95), (0.25, 0.8, 0.95)),
+        [p.cylinder(0.02, (s * 0.19, 0.15, 0.2), (s * 0.235, 0.15, 0.2)) for s in (-1, 1)],
+        p.slab(0.19, (0.1, 0.2), (0.15, 0.25)),
         look="red steel",
     )
-    b.cut("body", box(p(-0.28, -1, 0.07), p(0.28, -0.14, 0.45)))
-    b.bore("body", b.cylinder(0.022 * size, p(-1, -0.32, 0.26), p(1, -0.32, 0.26)))
+    b.cut("body", p.slab(0.28, (-1, -0.14), (0.07, 0.45)))
+    b.bore("body", p.cylinder(0.022, (-1, -0.32, 0.26), (1, -0.32, 0.26)))
     b.part(
         "auger",
-        b.cylinder(0.018 * size, p(-0.32, -0.32, 0.26), p(0.32, -0.32, 0.26)),
+        p.cylinder(0.018, (-0.32, -0.32, 0.26), (0.32, -0.32, 0.26)),
         [
-            beam(
-                0.03 * size,
-                0.02 * size,
-                p(x, -0.32 - 0.15 * cos(14 * x), 0.26 - 0.15 * sin(14 * x)),
-                p(x, -0.32 + 0.15 * cos(14 * x), 0.26 + 0.15 * sin(14 * x)),
+            p.beam(
+                0.03,
+                0.02,
+                (x, -0.32 - 0.15 * cos(14 * x), 0.26 - 0.15 * sin(14 * x)),
+                (x, -0.32 + 0.15 * cos(14 * x), 0.26 + 0.15 * sin(14 * x)),
             )
             for x in (-0.22, -0.11, 0, 0.11, 0.22)
         ],
@@ -789,8 +777,8 @@ def snow_blower(b: ObjectBuilder, size: float) -> None:
     b.spin("auger", "body", X, p(0, -0.32, 0.26))
     b.part(
         "chute",
-        b.cylinder(0.07 * size, p(0, -0.2, 0.542), p(0, -0.2, 0.6)),
-        beam(0.12 * size, 0.02 * size, p(0, -0.24, 0.58), p(0, -0.3, 0.85), Y),
+        p.cylinder(0.07, (0, -0.2, 0.542), (0, -0.2, 0.6)),
+        p.beam(0.12, 0.02, (0, -0.24, 0.58), (0, -0.3, 0.85), Y),
         look="red steel",
     )
     b.hinge("chute", "body", Z, p(0, -0.2, 0), 1.6, lower=-1.6)

@@ -18,15 +18,18 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.solids import Point, Solids
     from kinematify.generate.procedural.workshop import Look, Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _Motion = tuple[float, float, float]
 """Lower and upper limit, and the value at which a joint is shown [rad or m]."""
+_LENGTHS = {"ball": 2, "lathe": 2, "cone": 4, "tube": 4, "beam": 4}
+"""How many arguments of a shape are points and lengths, 3 of others; the rest are directions."""
 _ROUND = (solids.cylinder, solids.cone, solids.tube, solids.torus, solids.rod, solids.lathe)
 
 
@@ -142,6 +145,10 @@ class ObjectBuilder:
         """Add a part that looks like its parent, unless a material is given; returns its name."""
         return self.part(name, *shapes, look=material or self._parts[parent].look)
 
+    def sized(self, size: float) -> Sized:
+        """Return points and shapes in units of a size [m]."""
+        return Sized(self, size)
+
     def cut(self, name: str, *shapes: Solids) -> None:
         """Take shapes away from a part."""
         self._parts[name].cuts.extend(flat(shapes))
@@ -235,6 +242,23 @@ def look_of(said: str | Look) -> Look:
         return said
     color, _, material = ("", "", said) if said in MATERIALS else said.rpartition(" ")
     return (material, color or None) if material in MATERIALS else ("plastic", said)
+
+
+class Sized:
+    """Points in units of a size, and under their names all shapes whose points and lengths are given in it."""
+
+    def __init__(self, builder: ObjectBuilder, size: float) -> None:
+        """Take what is round as a builder draws it."""
+        self._rounds, self._size = builder.rounds, float(size)
+
+    def __call__(self, x: float, y: float, z: float) -> FloatArray:
+        """Return a point."""
+        return self._size * np.array([x, y, z], dtype=np.float64)
+
+    def __getattr__(self, name: str) -> Callable[..., Manifold]:
+        """Return a function that makes a shape."""
+        make, count = self._rounds.get(name) or getattr(solids, name), _LENGTHS.get(name, 3)
+        return lambda *given: make(*(np.multiply(self._size, item) for item in given[:count]), *given[count:])
 
 
 @contextmanager

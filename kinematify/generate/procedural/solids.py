@@ -15,7 +15,7 @@ from manifold3d import CrossSection, Manifold, OpType
 from kinematify.robot.transforms import across
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from kinematify.robot.arrays import FloatArray
 
@@ -157,15 +157,6 @@ def strip(places: Sequence[Sequence[float]], low: float, high: float) -> list[Ma
     """Return a flat bar between two heights along `places`: x, y and half its width there [m], with round ends."""
     discs = [cylinder(half, (x, y, low), (x, y, high)) for x, y, half in places]
     return [hull(one, other) for one, other in pairwise(discs)]
-
-
-def scaled(size: float) -> Callable[[float, float, float], FloatArray]:
-    """Return a function that makes a point from coordinates in units of a size."""
-
-    def point(x: float, y: float, z: float) -> FloatArray:
-        return size * np.array([x, y, z], dtype=np.float64)
-
-    return point
 
 
 def rod(radius: float, start: Level, end: Level, *, segments: int = 32) -> Manifold:

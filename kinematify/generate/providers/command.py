@@ -9,7 +9,6 @@ import string
 import subprocess
 import time
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault, InputError
@@ -30,87 +29,67 @@ _GRACE = 5.0  # from the polite end to the other one [s]
 _LAST_LINES = 6
 
 
-@dataclass(frozen=True)
-class CommandSource:
-    """Runs a command line with ``{image}``, ``{text}``, ``{seed}`` and ``{out}`` filled in; no shell is involved."""
+def run_command(template: str, limit: float, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
+    """Run a command line with ``{image}``, ``{text}``, ``{seed}`` and ``{out}`` filled in, unless the same job has.
 
-    template: str
-    limit: float
-    """[s]"""
-    licence: str = "That of the program and its weights."
-    name: str = "command"
+    No shell is involved.
 
-    def options(self) -> dict[str, object]:
-        """The command line."""
-        return {"command": self.template}
+    Args:
+        template: The command line.
+        limit: How long it may run [s].
+        prompt: What to build.
+        job: Folder and state of this request; everything that is made stays in it.
+        progress: Called with what is being done and the share that is done.
 
-    def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
-        """Make the parts: run the program unless an earlier call of the same job has.
+    Raises:
+        InputError: The command line cannot be used.
+        EnvironmentFault: The program failed, or left no mesh.
+    """
+    arguments = filled(template, prompt, job.folder / OUTPUT_FOLDER)
+    seconds = job.facts(_STEP).get("seconds") or _ran(arguments, limit, job.folder, progress)
+    path, labels = found_parts(job.folder / OUTPUT_FOLDER)
+    job.finish(_STEP, seconds=seconds)
+    return Generated(
+        path=path,
+        labels=labels,
+        provenance=Provenance(
+            provider="command",
+            model=arguments[0],
+            text=prompt.text,
+            images=tuple(image.name for image in prompt.images),
+            seed=prompt.seed,
+            licence="That of the program and its weights.",
+            cost=f"{seconds:.0f} s of this machine",
+            details={"command": template},
+        ),
+    )
 
-        Args:
-            prompt: What to build.
-            job: Folder and state of this request; everything that is made stays in it.
-            progress: Called with what is being done and the share that is done.
 
-        Raises:
-            InputError: The command line cannot be used.
-            EnvironmentFault: The program failed, or left no mesh.
-        """
-        arguments = filled(self.template, prompt, job.folder / OUTPUT_FOLDER)
-        seconds = job.facts(_STEP).get("seconds") or self._run(arguments, job, progress)
-        path, labels = found_parts(job.folder / OUTPUT_FOLDER)
-        job.finish(_STEP, seconds=seconds)
-        return Generated(
-            path=path,
-            labels=labels,
-            provenance=Provenance(
-                provider="command",
-                model=arguments[0],
-                text=prompt.text,
-                images=tuple(image.name for image in prompt.images),
-                seed=prompt.seed,
-                licence=self.licence,
-                cost=f"{seconds:.0f} s of this machine",
-                details={"command": self.template},
-            ),
-        )
-
-    def _run(self, arguments: list[str], job: PaidJob, progress: Progress) -> float:
-        """Return how long the program ran [s]."""
-        log, out = job.folder / LOG_FILE, job.folder / OUTPUT_FOLDER
-        out.mkdir(exist_ok=True)
-        start = time.monotonic()
-        with log.open("wb") as file:
-            try:
-                program = subprocess.Popen(
-                    arguments, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, start_new_session=True
-                )
-            except OSError as error:
-                raise InputError(
-                    f"The program {arguments[0]!r} cannot be started: {error.strerror}. Check --command."
-                ) from error
-            try:
-                status = self._waited(program, arguments[0], start, progress)
-            finally:
-                _stop(program)
-        if status is None:
-            raise EnvironmentFault(
-                f"The program {arguments[0]!r} was stopped after {self.limit:.0f} s. Give it more with --time-limit. "
-                f"{_end_of(log)}"
+def _ran(arguments: list[str], limit: float, folder: Path, progress: Progress) -> float:
+    """Return how long the program ran [s]."""
+    log, out, name = folder / LOG_FILE, folder / OUTPUT_FOLDER, arguments[0]
+    out.mkdir(exist_ok=True)
+    start = time.monotonic()
+    with log.open("wb") as file:
+        try:
+            program = subprocess.Popen(
+                arguments, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, start_new_session=True
             )
-        if status != 0:
-            raise EnvironmentFault(f"The program {arguments[0]!r} ended with status {status}. {_end_of(log)}")
-        return time.monotonic() - start
-
-    def _waited(self, program: subprocess.Popen[bytes], name: str, start: float, progress: Progress) -> int | None:
-        """Exit status, or None if time ran out."""
-        while (status := program.poll()) is None:
-            spent = time.monotonic() - start
-            if spent > self.limit:
-                return None
-            progress(f"{name} has run for {spent:.0f} s", min(0.95, spent / self.limit))
-            time.sleep(_POLL)
-        return status
+        except OSError as error:
+            raise InputError(f"The program {name!r} cannot be started: {error.strerror}. Check --command.") from error
+        try:
+            while (status := program.poll()) is None and (spent := time.monotonic() - start) <= limit:
+                progress(f"{name} has run for {spent:.0f} s", min(0.95, spent / limit))
+                time.sleep(_POLL)
+        finally:
+            _stop(program)
+    if status is None:
+        raise EnvironmentFault(
+            f"The program {name!r} was stopped after {limit:.0f} s. Give it more with --time-limit. {_end_of(log)}"
+        )
+    if status != 0:
+        raise EnvironmentFault(f"The program {name!r} ended with status {status}. {_end_of(log)}")
+    return time.monotonic() - start
 
 
 def filled(template: str, prompt: Prompt, out: Path) -> list[str]:

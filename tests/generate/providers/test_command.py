@@ -15,7 +15,7 @@ from PIL import Image
 
 from kinematify.cli.app import run
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.generate.providers.command import LOG_FILE, CommandSource, filled
+from kinematify.generate.providers.command import LOG_FILE, filled, run_command
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.source import MOST_WORDS, check_prompt
 
@@ -51,10 +51,9 @@ def image(tmp_path: Path) -> Path:
 
 
 def generate(folder: Path, template: str, image: Path, limit: float = 20.0) -> Generated:
-    source = CommandSource(template, limit)
     prompt = check_prompt(None, (image,), seed=1)
-    with open_job(folder, source.name, prompt.digest(source.options())) as job:
-        return source.generate(prompt, job, lambda stage, done: None)
+    with open_job(folder, "command", prompt.digest({"command": template})) as job:
+        return run_command(template, limit, prompt, job, lambda stage, done: None)
 
 
 def test_program_makes_parts_and_runs_once(tmp_path: Path, image: Path) -> None:
