@@ -43,7 +43,7 @@ from kinematify.generate.procedural.workshop import Workshop
         "shipping crate, transport box, flight case, equipment case, road case, tool case, drill case, vanity case, "
         "beauty case, humidor, cooler box, picnic hamper, keepsake box, memory box, toy crate, tool crate, violin "
         "case, guitar case, trumpet case, saxophone case, gun case, rifle case, keyboard case, poker case, chess "
-        "box, coffin, sarcophagus, snuff box, trinket box, spice box, card box, seed tin, cigarette case, cufflink "
+        "box, coffin, sarcophagus, snuff box, trinket box, spice box, card box, cigarette case, cufflink "
         "box, earbud case, charging case, contact lens case, cooler, ice chest"
     ),
     usual={
@@ -71,7 +71,7 @@ from kinematify.generate.procedural.workshop import Workshop
         ): {"width": 0.9, "depth": 0.35, "height": 0.15},
         "coffin, sarcophagus": {"width": 2, "depth": 0.7, "height": 0.5},
         (
-            "snuff box, trinket box, spice box, card box, seed tin, cigarette case, cufflink box, earbud case, "
+            "snuff box, trinket box, spice box, card box, cigarette case, cufflink box, earbud case, "
             "charging case, contact lens case"
         ): {"width": 0.12, "depth": 0.08, "height": 0.06},
     },

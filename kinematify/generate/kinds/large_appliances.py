@@ -280,6 +280,7 @@ def dishwasher(
     height=length(0.5, 2.4, default=1.7, usual=(1.3, 2.0), help="Outer height."),
     depth=length(0.35, 1.0, default=0.6, usual=(0.5, 0.7), help="Outer depth of the body."),
     doors=whole(1, 4, default=2, help="Doors."),
+    drawers=whole(0, 3, default=0, drawn=False, help="Freezer drawers, below doors that are side by side."),
     freezer=choice(
         {
             "top": "freezer on top, freezer above, top freezer, freezer compartment, ice compartment",
@@ -299,6 +300,7 @@ def fridge(
     height: float,
     depth: float,
     doors: int,
+    drawers: int,
     freezer: str,
     hinge_side: str,
     handle: str,
@@ -314,7 +316,14 @@ def fridge(
 
     # Left, right, bottom and top of each door as shares of the front.
     def fields_of_(doors: int, freezer: str) -> Sequence[tuple[float, float, float, float]]:
-        if doors == 1:
+        if drawers:
+            low, rows = 0.2 + 0.1 * drawers, (doors + 1) // 2
+            found = [(0.0, 1.0, low * k / drawers, low * (k + 1) / drawers) for k in range(drawers)]
+            for k in range(doors):
+                row, bottom = k // 2, low + (1.0 - low) * (k // 2) / rows
+                span = (0.0, 1.0) if k == doors - 1 and doors % 2 else (0.5 * (k % 2), 0.5 * (k % 2) + 0.5)
+                found.append((*span, bottom, low + (1.0 - low) * (row + 1) / rows))
+        elif doors == 1:
             found = [(0.0, 1.0, 0.0, 1.0)]
         elif doors == 2 and freezer == "side":
             found = [(0.0, 0.42, 0.0, 1.0), (0.42, 1.0, 0.0, 1.0)]
@@ -364,10 +373,12 @@ def fridge(
         )
         for left, right, bottom, top in fields
     ]
-    shelves = [shelf for opening in openings for shelf in shelves_of(opening)]
+    shelves = [shelf for opening in openings[drawers:] for shelf in shelves_of(opening)]
     w.body("body", carcass(width, height, depth, openings), shelves)
     fitting = Fitting(clearance=clearance, grip=handle, rest=open)
-    for k, (field, opening) in enumerate(zip(fields, openings, strict=False)):
+    for k, opening in enumerate(openings[:drawers]):
+        add_drawer(w, f"drawer_{k + 1}", "body", opening, fitting)
+    for k, (field, opening) in enumerate(zip(fields[drawers:], openings[drawers:], strict=True)):
         side = hinge_side if field[1] - field[0] == 1.0 else "left" if field[0] == 0.0 else "right"
         name = f"door_{k + 1}"
         add_door(w, name, "body", opening, fitting, side=side, hinge=hinge)
@@ -377,7 +388,7 @@ def fridge(
 
 @kind(
     words=(
-        "washer, dryer, tumble dryer, laundry machine, clothes washer, front loading washer, front loading washing "
+        "washer, tumble dryer, laundry machine, clothes washer, front loading washer, front loading washing "
         "machine, toy washing machine, laundry washer, clothes dryer, tumble drier"
     ),
     material="metal",

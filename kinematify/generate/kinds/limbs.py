@@ -66,9 +66,17 @@ def jaws(
 
 
 def fingered(
-    w: Workshop, clearance: float, frame: FloatArray, palm: str, called: str, count: int, reach: float, rest: float
+    w: Workshop,
+    clearance: float,
+    frame: FloatArray,
+    palm: str,
+    called: str,
+    count: int,
+    reach: float,
+    rest: float,
+    joints: int = 1,
 ) -> None:
-    """Add fingers to a `finger_palm`; zero is straight, positive opens."""
+    """Add fingers of so many joints each to a `finger_palm`; zero is straight, positive opens."""
     tight = min(clearance, 0.0008)
     wide = 0.02
     start = fork_room(_FINGER_HALF, tight)
@@ -81,12 +89,20 @@ def fingered(
             half.translate((0, -around, _KNUCKLE)).rotate((0, 0, angle))
             for half in fork(wide, _FINGER_HALF, tight, 2.2 * _FINGER_HALF)
         ]
-        blade = slab(0.5 * wide, _FINGER_HALF, (start, reach)) + cylinder(
-            _FINGER_HALF, (-0.5 * wide, 0, reach), (0.5 * wide, 0, reach)
-        )
-        seen.add(palm, forked)
-        seen.body(f"{called}_{k + 1}", tongue, blade.translate((0, -around, _KNUCKLE)).rotate((0, 0, angle)))
-        seen.turns(f"{called}_{k + 1}", palm, turn @ X, turn @ (0, -around, _KNUCKLE), (0.0, 1.2), rest=rest)
+        pitch, parent = reach / joints, palm
+        for j in range(joints):
+            end = pitch if j == joints - 1 else pitch - start
+            blade = slab(0.5 * wide, _FINGER_HALF, (start, end))
+            if j == joints - 1:
+                blade += cylinder(_FINGER_HALF, (-0.5 * wide, 0, end), (0.5 * wide, 0, end))
+            name, up = f"{called}_{k + 1}" + (f"_{j + 1}" if j else ""), (0, 0, j * pitch)
+            solids = forked, tongue, blade.translate((0, -around, _KNUCKLE)).rotate((0, 0, angle))
+            forks, *link = [solid.translate(up) for solid in solids] if j else solids
+            seen.add(parent, forks)
+            seen.body(name, link)
+            pivot = turn @ (0, -around, _KNUCKLE + j * pitch)
+            seen.turns(name, parent, turn @ X, pivot, (0.0, 1.2), rest=rest)
+            parent = name
 
 
 # ---- straight limbs that hang down

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, sin
 
 from kinematify.generate.library.builder import ObjectBuilder, spread
-from kinematify.generate.library.kind import kind, whole
+from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import button, knob, plunger
 from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
@@ -226,7 +226,7 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
         b.slide(f"button_{k}", "cabinet", -up, 0.006)
 
 
-@kind(words="ping pong table, folding table tennis table", size=(0.8, 1.0))
+@kind(words="ping pong table, folding table tennis table", size=length(0.8, 1.0, default=1.0))
 def table_tennis_table(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(

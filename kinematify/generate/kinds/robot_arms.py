@@ -189,16 +189,17 @@ def gantry(w: Workshop, width: float, depth: float, height: float, clearance: fl
     fingers=whole(2, 6, default=2, usual=(2, 4), help="Two are parallel jaws.", words="finger, jaw"),
     width=length(0.06, 0.5, default=0.12, usual=(0.08, 0.16), help="Of two jaws."),
     finger=length(0.05, 0.3, default=0.07, usual=(0.06, 0.1), help="Its length."),
+    joints=whole(1, 2, default=1, drawn=False, help="Of every finger; parallel jaws have one.", words="knuckle"),
 )
-def gripper(w: Workshop, fingers: int, width: float, finger: float, open: float, clearance: float) -> None:
+def gripper(w: Workshop, fingers: int, width: float, finger: float, joints: int, open: float, clearance: float) -> None:
     """Grippers: parallel jaws on a rail, or fingers on pins around a palm."""
     half = 0.5 * width
-    if fingers == 2:
+    if fingers == 2 and joints == 1:
         w.body("palm", jaw_rail(half))
         jaws(w, clearance, at((0, 0, 0)), "palm", "finger", half, finger, open)
     else:
         w.body("palm", finger_palm(fingers))
-        fingered(w, clearance, at((0, 0, 0)), "palm", "finger", fingers, finger, open)
+        fingered(w, clearance, at((0, 0, 0)), "palm", "finger", fingers, finger, open, joints)
     w.settle()
 
 

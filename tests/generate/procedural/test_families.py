@@ -36,10 +36,14 @@ def carried(blueprint: Blueprint, name: str) -> set[str]:
     return found
 
 
-@pytest.fixture(scope="module", params=[(name, seed) for name in FAMILIES for seed in SEEDS], ids=str)
+CASES = [(name, seed, {}) for name in FAMILIES for seed in SEEDS]
+CASES += [("fridge", None, {"drawers": 2, "width": 0.9}), ("gripper", None, {"fingers": 3, "joints": 2})]
+
+
+@pytest.fixture(scope="module", params=CASES, ids=str)
 def blueprint(request: pytest.FixtureRequest) -> Blueprint:
-    name, seed = request.param
-    return build(name, {"style": "clean"}, seed=seed)
+    name, seed, given = request.param
+    return build(name, {"style": "clean", **given}, seed=seed)
 
 
 def test_parts_are_closed_and_in_one_piece(blueprint):
@@ -87,6 +91,13 @@ def test_a_style_changes_the_mesh_and_leaves_the_joints_free(style):
         np.testing.assert_allclose(one.bounds, two.bounds, atol=2e-4)
     for value in (0.0, 0.6, 1.2):
         assert not collisions(other.moved({"finger_1": value}))
+
+
+def test_doors_of_a_fridge_are_side_by_side_above_its_drawers():
+    boxes = {part.name: part.bounds for part in build("fridge", {"drawers": 2}).parts}
+    (left, right), drawers = (boxes[f"door_{k}"] for k in (1, 2)), (boxes[f"drawer_{k}"] for k in (1, 2))
+    assert left[1][0] < right[0][0]
+    assert max(box[1][2] for box in drawers) < min(left[0][2], right[0][2])
 
 
 def test_a_drawer_that_is_out_cannot_be_lifted():
