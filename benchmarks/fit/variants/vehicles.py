@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.kinds.vehicles import axles
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
-from kinematify.generate.library.mechanisms import arm, axles, caster, rotor, wheel
+from kinematify.generate.library.mechanisms import arm, caster, rotor, wheel
 from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
 

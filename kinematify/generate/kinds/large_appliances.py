@@ -11,7 +11,7 @@ from manifold3d import Manifold
 from kinematify.generate.library import mechanisms
 from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, share, whole
-from kinematify.generate.library.mechanisms import button, hand_wheel, knob, lever
+from kinematify.generate.library.mechanisms import button, knob, lever, star_wheel
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel, stub
@@ -540,7 +540,7 @@ def safe(
     length = min(0.12, 0.22 * size)
     if handle == "wheel":
         with drawn_on(w, clearance) as b:
-            hand_wheel(b, "handle", "door", place, length, -Y, spokes=3, rim=False, reach=0.5 * pi)
+            star_wheel(b, "handle", "door", place, length, -Y, 3, 0.5 * pi)
     else:
         with drawn_on(w, clearance) as b:
             lever(b, "handle", "door", place, -Y, X, 1.2 * length, reach=-0.5 * pi)

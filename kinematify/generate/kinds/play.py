@@ -412,10 +412,11 @@ def synthesizer(b: ObjectBuilder, number: int) -> None:
 @kind(words="castanet", radius=(0.03, 0.05))
 def castanets(b: ObjectBuilder, radius: float) -> None:
     r = radius
-    b.part("shell", ball(r, (0, 0, 0)), slab(0.2 * r, (r * 0.8, 1.2 * r), (-0.3 * r, -0.05 * r)), look="brown wood")
-    b.cut("shell", slab(2 * r, 2 * r, (-0.02 * r, 2 * r)), ball(0.75 * r, (0, 0, 0.2 * r)))
-    b.part("other_shell", ball(r, (0, 0, 0)), slab(0.2 * r, (r * 0.8, 1.2 * r), (0.05 * r, 0.3 * r)), look="brown wood")
-    b.cut("other_shell", slab(2 * r, 2 * r, (-2 * r, 0.02 * r)), ball(0.75 * r, (0, 0, -0.2 * r)))
+    p = b.sized(r)
+    for name, s in (("shell", -1), ("other_shell", 1)):
+        shell = p.ball(1, (0, 0, 0)).scale((1, 1, 0.45))
+        b.part(name, shell, p.slab(0.2, (0.8, 1.2), (s * 0.05, s * 0.2)), look="brown wood")
+        b.cut(name, p.slab(2, 2, (s * -2, s * 0.02)), p.ball(0.75, (0, 0, s * -0.2)).scale((1, 1, 0.45)))
     b.hinge("other_shell", "shell", -X, (0, 1.2 * r, 0), 0.6)
 
 

@@ -10,7 +10,7 @@ from manifold3d import Manifold
 
 from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
-from kinematify.generate.library.mechanisms import axles, case, caster, rotor, wheel
+from kinematify.generate.library.mechanisms import case, caster, rotor, wheel
 from kinematify.generate.library.panels import grip, leaf
 from kinematify.generate.procedural.solids import Point, X, Y, Z, beam, block, box, slab, vector
 
@@ -21,6 +21,24 @@ def _windows(d: ObjectBuilder, lower: Point, upper: Point) -> Sequence[Manifold]
     edge = 0.1 * (high - low) * (1, 1, 0)
     bands = [box(low + edge * a - 0.005 * b, high - edge * a + 0.005 * b) for a, b in ((Y, X), (X, Y))]
     return d.painted(*bands, material="plastic", color="black")
+
+
+def axles(
+    d: ObjectBuilder, parent: str, xs: Sequence[float], half: float, radius: float, wide: float, axle: float
+) -> None:
+    """Pairs of wheels; the car drives along x, its sides are at y = -half and half."""
+    for i, x in enumerate(xs):
+        for s, side in ((-1.0, "right"), (1.0, "left")):
+            wheel(
+                d,
+                f"wheel_{i}_{side}",
+                parent,
+                (x, s * (half + axle + wide / 2), radius),
+                radius,
+                wide,
+                s * Y,
+                axle=axle,
+            )
 
 
 @kind(

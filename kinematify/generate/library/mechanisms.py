@@ -12,8 +12,6 @@ import numpy as np
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, rounded_block
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from manifold3d import Manifold
 
     from kinematify.generate.library.builder import ObjectBuilder
@@ -385,33 +383,19 @@ def caster(
     d.spin(name, fork, Y, axle)
 
 
-def hand_wheel(
-    d: ObjectBuilder,
-    name: str,
-    parent: str,
-    at: Point,
-    radius: float,
-    out: FloatArray,
-    *,
-    spokes: int = 4,
-    rim: bool = True,
-    reach: float | None = None,
+def star_wheel(
+    d: ObjectBuilder, name: str, parent: str, at: Point, radius: float, out: FloatArray, spokes: int, reach: float
 ) -> None:
-    """Spokes on a shaft, with or without a rim, turned clockwise; `reach` as for `knob`."""
+    """Spokes on a shaft, turned clockwise by `reach` [rad]."""
     at = np.asarray(at, dtype=np.float64)
     wire, gap = 0.1 * radius, d.gap(radius)
     level, side = at + (gap + 3.0 * wire) * out, _across(out, (1.0, 1.0))[1]
     for angle in np.arange(spokes) * 2.0 * np.pi / spokes:
         tip = level + radius * (np.cos(angle) * side + np.sin(angle) * np.cross(side, out))
-        d.part(name, d.rod((0.6 if rim else 0.8) * wire, level, tip), look="metal")
-    if rim:
-        d.part(name, d.torus(radius, wire, level, out))
+        d.part(name, d.rod(0.8 * wire, level, tip), look="metal")
     d.part(name, d.cylinder(1.5 * wire, at + gap * out, level))
     _shaft(d, name, parent, at, wire, out, 2.0 * wire, gap)
-    if reach is None:
-        d.spin(name, parent, -out, at)
-    else:
-        d.hinge(name, parent, -out, at, reach)
+    d.hinge(name, parent, -out, at, reach)
 
 
 def crank(
@@ -483,24 +467,6 @@ def bail(
         d.cut(parent, d.cylinder(0.3 * thick + 1.5 * gap, a, a + (1.5 * thick + gap) * along))
         d.cut(parent, d.cylinder(0.3 * thick + 1.5 * gap, b, b - (1.5 * thick + gap) * along))
     d.hinge(name, parent, along, 0.5 * (a + b), upper, lower)
-
-
-def axles(
-    d: ObjectBuilder, parent: str, xs: Sequence[float], half: float, radius: float, wide: float, axle: float
-) -> None:
-    """Pairs of wheels; the car drives along x, its sides are at y = -half and half."""
-    for i, x in enumerate(xs):
-        for s, side in ((-1.0, "right"), (1.0, "left")):
-            wheel(
-                d,
-                f"wheel_{i}_{side}",
-                parent,
-                (x, s * (half + axle + wide / 2), radius),
-                radius,
-                wide,
-                s * Y,
-                axle=axle,
-            )
 
 
 def in_fork(d: ObjectBuilder, name: str, parent: str, middle: Point, radius: float, wide: float, top: float) -> None:
