@@ -178,7 +178,7 @@ def _as_answer(done: GeneratedModel) -> dict[str, Any]:
     made, written, parts = done.made, done.written, done.parts
     answer: dict[str, Any] = {"schema": 1, "out": str(done.out), "validation": validation_answer(done.report)}
     if parts is not None:
-        return {**answer, "job": str(job_folder(done.out)), "provenance": parts.provenance.as_json()}
+        return {**answer, "job": str(job_folder(done.out)), "provenance": parts.provenance}
     assert made is not None
     score = _score(done)
     answer |= {
@@ -207,7 +207,7 @@ def _blocks(done: GeneratedModel) -> list[str]:
     if done.parts is not None and done.inference is not None:
         maker = done.parts.provenance
         words = (
-            f"Parts of {maker.provider} ({maker.model}), cost: {maker.cost or 'unknown'}. Terms: {maker.licence}\n"
+            f"Parts of {maker['model']}, cost: {maker['cost']}. Terms: {maker['licence']}\n"
             f"{job_folder(done.out)}: everything that the generator made; the same request is not sent again"
         )
         return [words, describe(done.inference, done.out), judged]

@@ -82,7 +82,7 @@ def made_parts(
     found = infer(
         read, config=order.config, progress=lambda stage, done: progress(stage, _MADE + (_INFERRED - _MADE) * done)
     )
-    inference = replace(found, provenance=parts.provenance.as_json())
+    inference = replace(found, provenance=parts.provenance)
     write_model_folder(
         order.out,
         lambda folder: write_inference_files(

@@ -12,7 +12,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.generate.providers.source import Generated, Provenance, found_parts
+from kinematify.generate.providers.source import Generated, found_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,16 +52,16 @@ def run_command(template: str, limit: float, prompt: Prompt, job: PaidJob, progr
     return Generated(
         path=path,
         labels=labels,
-        provenance=Provenance(
-            provider="command",
-            model=arguments[0],
-            text=prompt.text,
-            images=tuple(image.name for image in prompt.images),
-            seed=prompt.seed,
-            licence="That of the program and its weights.",
-            cost=f"{seconds:.0f} s of this machine",
-            details={"command": template},
-        ),
+        provenance={
+            "provider": "command",
+            "model": arguments[0],
+            "text": prompt.text,
+            "images": [image.name for image in prompt.images],
+            "seed": prompt.seed,
+            "licence": "That of the program and its weights.",
+            "cost": f"{seconds:.0f} s of this machine",
+            "details": {"command": template},
+        },
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -102,29 +102,6 @@ def _media_type(path: Path) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Provenance:
-    """Where parts come from; it is written into ``inference.json``."""
-
-    provider: str
-    model: str
-    """Name and version as far as the provider tells them."""
-    text: str | None
-    images: tuple[str, ...]
-    """File names."""
-    seed: int
-    licence: str
-    """Whose terms hold for the result, one sentence."""
-    cost: str | None = None
-    """What it cost as far as is known."""
-    details: dict[str, Any] = field(default_factory=dict)
-    """Settings and identifiers of the provider."""
-
-    def as_json(self) -> dict[str, Any]:
-        """The same as JSON values."""
-        return asdict(self)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Generated:
     """Result of a generator."""
 
@@ -132,7 +109,8 @@ class Generated:
     """File or folder that `kinematify.load_assembly` reads."""
     labels: Path | None
     """Labels per triangle if `path` is one mesh with labels."""
-    provenance: Provenance
+    provenance: dict[str, Any]
+    """Who made it of what, and whose terms hold, as JSON values; written into ``inference.json``."""
 
 
 _PACKED = ".zip"

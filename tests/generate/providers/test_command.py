@@ -60,7 +60,7 @@ def test_program_makes_parts_and_runs_once(tmp_path: Path, image: Path) -> None:
     template = program(TWO_BOXES + "print('made', image)\n")
     made = generate(tmp_path / "job", template, image)
     assert sorted(path.name for path in made.path.iterdir()) == ["base.obj", "top.obj"]
-    assert made.provenance.images == (image.name,)
+    assert made.provenance["images"] == [image.name]
     log = (tmp_path / "job" / LOG_FILE).read_text(encoding="utf-8")
     assert str(image) in log  # one word, whatever its letters
     (tmp_path / "job" / LOG_FILE).unlink()
