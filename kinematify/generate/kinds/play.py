@@ -415,9 +415,13 @@ def castanets(b: ObjectBuilder, radius: float) -> None:
     p = b.sized(r)
     for name, s in (("shell", -1), ("other_shell", 1)):
         shell = p.ball(1, (0, 0, 0)).scale((1, 1, 0.45))
-        b.part(name, shell, p.slab(0.2, (0.8, 1.2), (s * 0.05, s * 0.2)), look="brown wood")
-        b.cut(name, p.slab(2, 2, (s * -2, s * 0.02)), p.ball(0.75, (0, 0, s * -0.2)).scale((1, 1, 0.45)))
-    b.hinge("other_shell", "shell", -X, (0, 1.2 * r, 0), 0.6)
+        inner = p.slab(2, 1.1, (s * -2, s * 0.02)) + p.ball(0.75, (0, 0, s * -0.2)).scale((1, 1, 0.45))
+        knuckle = p.cylinder(0.08, (s * 0.02, 1.12, 0), (s * 0.2, 1.12, 0))
+        tab = p.slab((s * 0.02, s * 0.2), (0.8, 1.12), (s * 0.02, s * 0.08))
+        b.part(name, shell - inner, tab, knuckle, look="brown wood")
+    b.part("shell", p.cylinder(0.04, (-0.1, 1.12, 0), (0.2, 1.12, 0)))
+    b.cut("other_shell", p.cylinder(0.05, (0, 1.12, 0), (0.3, 1.12, 0)))
+    b.hinge("other_shell", "shell", -X, (0, 1.12 * r, 0), 0.6)
 
 
 @kind("nodding dog", words="bobblehead, bobble head, nodding toy, wobbly toy", size=(0.8, 1.3))
