@@ -19,6 +19,7 @@ from kinematify.render.environment_picture import Piece, Renderer, ViewerWindow,
 from kinematify.render.picture import CARCASS, HELD, OTHERS
 from kinematify.robot.robot import fixed_together
 from kinematify.robot.transforms import transformed
+from kinematify.simulation.engine import depth_of
 from kinematify.simulation.engines import require_engine
 from kinematify.versions import require
 
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.joint_dynamics import Draw
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.engines import EngineWorld
+    from kinematify.simulation.engine import Engine
     from kinematify.simulation.world import ObjectState
 
 _OPTIONS = ("joint", "qpos", "open_fraction")
@@ -61,7 +62,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
     _with_robot: ClassVar[bool] = False
     _helping: ClassVar[float] = 0.0
     """Weight of what a subclass rewards beside opening (`_helped`)."""
-    world: EngineWorld
+    world: Engine
     """What runs."""
     articulated_object: ArticulatedObject
     target: Target
@@ -193,7 +194,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def reading(self) -> ObjectState:
         """State of the object now."""
-        return self.world.state()
+        return self.world.observe()
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -204,7 +205,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             InputError: An option does not exist or is out of range.
         """
         self.begin_episode(seed, options)
-        reading = self.world.state()
+        reading = self.world.observe()
         self._progress = self.goal.begin(reading)
         self._last = self._observe(reading)
         if self.render_mode == "human":
@@ -221,7 +222,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._act(action)
         if not self.world.stable():
             return self._failed(self._last)
-        reading = self.world.state()
+        reading = self.world.observe()
         self._last = self._observe(reading)
         reward, ended, info = self._outcome(reading, self._helped())
         if self.render_mode == "human":
@@ -276,7 +277,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             "is_success": is_success,
             "open_fraction": float(self._progress["fraction"]),
             "thrown": bool(self._progress["thrown"]),
-            "max_penetration": self.world.depth(),
+            "max_penetration": depth_of(self.world),
             "escaped": escaped,
             "unstable": False,
             "warnings": self.world.warnings(),

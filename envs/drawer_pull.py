@@ -20,6 +20,7 @@ from kinematify.manipulation.manipulator import hand_links
 from kinematify.manipulation.robot_place import column_mesh
 from kinematify.render.environment_picture import Piece
 from kinematify.render.picture import ARM, HAND, STAND
+from kinematify.simulation.engine import depth_of
 from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:
@@ -148,6 +149,8 @@ class DrawerPullEnv(OpeningEnv):
         super().__init__(model, **keywords)
         self._make_world()
         self._dof = len(self.robot.robot.arm_joints)
+        joints = self.robot.scene.mechanism.joints
+        self._driven = [joints.index(name) for name in (*self.robot.robot.arm_joints, *self.robot.robot.finger_joints)]
         self.action_space: Space = Box(-1.0, 1.0, (7 if control == TOOL else self._dof + 1,), np.float32)
         self.observation_space: Space = self._space()
 
@@ -176,7 +179,7 @@ class DrawerPullEnv(OpeningEnv):
         self._gap = 1.0
         values = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
         self.world.place(values, self._commands())
-        return self.world.depth()
+        return depth_of(self.world)
 
     def _commands(self) -> FloatArray:
         """Commands of the servos: arm, then fingers."""
@@ -191,7 +194,7 @@ class DrawerPullEnv(OpeningEnv):
         """Move the targets of the servos: never far from where the joints are, so that nothing winds up."""
         arm = self.robot.arm
         step = JOINT_STEP * action[:-1] if self.control == JOINT else self._joint_step(action[:6])
-        now = self.world.driven()[0][: self._dof]
+        now = self.world.state(robot=True)[0][self._driven[: self._dof]]
         wanted = np.clip(self.wanted + step, now - _LEAD, now + _LEAD)
         self.wanted = np.clip(wanted, arm.lower, arm.upper)
         rate = CONTROL_STEP / FINGER_SECONDS
@@ -216,8 +219,10 @@ class DrawerPullEnv(OpeningEnv):
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         found = np.zeros(self.observation_space.shape or ())
         self.goal.fill_joints(reading, found)
-        tool, (values, speeds), touch = self.world.tool(), self.world.driven(), self.world.touch()
-        planned = self.world.link_poses()[self.target.link][:3, :3] @ self.plan.T_link_tool[:3, :3]
+        poses, touch = self.world.link_poses(), self.world.touch()
+        values, speeds = (part[self._driven] for part in self.world.state(robot=True))
+        tool = poses[ROBOT + self.robot.robot.tool]
+        planned = poses[self.target.link][:3, :3] @ self.plan.T_link_tool[:3, :3]
         away = reading.hold - tool[:3, 3]
         self._distance = float(np.sqrt(away @ away))
         self._grips = bool((touch >= TOUCH_FORCE).all())

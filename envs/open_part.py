@@ -13,6 +13,7 @@ from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.goal import CONTROL_STEP, OPEN_BOUND, PLACE_BOUND, SPEED_BOUND, SUBSTEPS
 from kinematify.envs.worlds import HAND_SPEED, hand_facts
 from kinematify.errors import InputError
+from kinematify.simulation.engine import depth_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -148,11 +149,11 @@ class OpenPartEnv(OpeningEnv):
     def _place(self, leaders: FloatArray) -> float:
         """The hand's spring is slack."""
         self.world.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])
-        self._hold = self.world.state().hold
+        self._hold = self.world.observe().hold
         if self.control == POSITION:
             self._command = self._hold.copy()
-            self.world.pull(self._command)
-        return self.world.depth()
+            self.world.command(self._command)
+        return depth_of(self.world)
 
     @property
     def full_force(self) -> float:
@@ -175,7 +176,7 @@ class OpenPartEnv(OpeningEnv):
     def _act(self, action: NDArray[np.float32]) -> None:
         clipped = np.minimum(np.maximum(np.asarray(action, dtype=np.float64), -1.0), 1.0)
         self._command = self.commanded(self._command, self._hold, clipped)
-        self.world.pull(self._command)
+        self.world.command(self._command)
         self.world.step(SUBSTEPS)
 
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:

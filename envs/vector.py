@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.mujoco_engine import MujocoWorld
+    from kinematify.simulation.mujoco_engine import MujocoEngine
     from kinematify.simulation.world import ObjectState
 
     BoolArray = NDArray[np.bool_]
@@ -91,7 +91,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         self._allocate()
 
     def _allocate(self) -> None:
-        self._worlds = [cast("MujocoWorld", env.world) for env in self._envs]
+        self._worlds = [cast("MujocoEngine", env.world) for env in self._envs]
         self._models, model = [world.model for world in self._worlds], self._worlds[0].model
         self._workers = [mujoco.MjData(model) for _ in range(self._threads)]
         self._rollout = Rollout(nthread=self._threads if self._threads > 1 else 0)
@@ -168,7 +168,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         start = 1  # time
         qpos = self._state[:, start : start + self._nq]
         qvel = self._state[:, start + self._nq : start + self._nq + self._nv]
-        return self._worlds[0].split(qpos, qvel, self._sensors)
+        return self._worlds[0].observe((qpos, qvel, self._sensors))
 
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         command = self._control[:, 0] - self._sensors[:, :3] if self._envs[0].control == POSITION else 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,15 +14,15 @@ from kinematify.envs.joint_dynamics import full_force, joint_dynamics
 from kinematify.geometry.rest_pairs import overlapping_links
 from kinematify.manipulation.manipulator import effort_limits
 from kinematify.robot.robot import fixed_together
-from kinematify.simulation.engines import open_world
+from kinematify.simulation.engines import open_engine
+from kinematify.simulation.mujoco_engine import mechanics
 from kinematify.simulation.world import HeldPoint, PlacedModel, PlacedRobot, PullingHand, WorldSpec
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.engines import EngineWorld
-    from kinematify.simulation.mujoco_engine import MujocoWorld
+    from kinematify.simulation.engine import Engine
 
 LAG = 0.08  # with this share of the way between hand and part the spring pulls with full force
 """Distance between hand and part at which the spring has full force, share of the way."""
@@ -56,26 +56,23 @@ class WorldFacts:
     dynamics: tuple[FloatArray, FloatArray]
     """Damping and friction of all joints (`joint_dynamics`)."""
 
-    def opened(self, engine: str) -> EngineWorld:
-        """Open a world."""
-        world = open_world(engine, self.spec)
-        world.resist(*self.dynamics)
+    hand: PullingHand | None = None
+    """What pulls where there is no robot."""
+
+    def opened(self, engine: str) -> Engine:
+        """Open a world, with the hand if there is one."""
+        world = open_engine(engine, self.spec)
+        world.resist(*self.dynamics, self.hand)
         return world
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HandFacts(WorldFacts):
-    """Abilities of the hand."""
+    """The same with a hand."""
 
     hand: PullingHand
     inertia: float
     """That the joint moves at most [kg m^2 or kg]."""
-
-    def opened(self, engine: str) -> EngineWorld:
-        """Open a world with the hand."""
-        world = super().opened(engine)
-        world.take(self.hand)
-        return world
 
 
 @lru_cache(maxsize=16)
@@ -87,7 +84,7 @@ def hand_facts(articulated_object: ArticulatedObject, target: Target, *, spring:
         object=_placed(articulated_object, articulated_object.T_world_root),
         point=_point(articulated_object, target),
     )
-    world, dynamics = _loads(articulated_object, spec)
+    dynamics = _dynamics(articulated_object, spec)
 
     def moved(values: FloatArray) -> FloatArray:
         """Inertia and holding torque of the joint and of all that follow it, at values of it, shape (2, n)."""
@@ -95,7 +92,7 @@ def hand_facts(articulated_object: ArticulatedObject, target: Target, *, spring:
         for value in values:
             leaders = mechanism.rest.copy()
             leaders[target.leader] = value
-            matrix, bias = world.mechanics(leaders)
+            matrix, bias = mechanics(spec, leaders)
             leads = mechanism.leads_at(leaders)[:, target.leader]
             found.append((float(leads @ matrix @ leads), float(leads @ bias)))
         return np.array(found).T
@@ -140,7 +137,7 @@ def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvR
         ),
         point=_point(articulated_object, target),
     )
-    return WorldFacts(spec=spec, dynamics=_loads(articulated_object, spec)[1])
+    return WorldFacts(spec=spec, dynamics=_dynamics(articulated_object, spec))
 
 
 def _placed(articulated_object: ArticulatedObject, T_world_root: FloatArray) -> PlacedModel:
@@ -161,8 +158,7 @@ def _point(articulated_object: ArticulatedObject, target: Target) -> HeldPoint:
     )
 
 
-def _loads(articulated_object: ArticulatedObject, spec: WorldSpec) -> tuple[MujocoWorld, tuple[FloatArray, FloatArray]]:
-    """World that tells what joints move and carry, MuJoCo's whatever engine is asked for, and their dynamics."""
-    world = cast("MujocoWorld", open_world("mujoco", spec))
-    matrix, bias = world.mechanics(articulated_object.scene.mechanism.rest)
-    return world, joint_dynamics(articulated_object, np.diag(matrix).copy(), bias)
+def _dynamics(articulated_object: ArticulatedObject, spec: WorldSpec) -> tuple[FloatArray, FloatArray]:
+    """Damping and friction by what joints move and carry: MuJoCo tells that, whatever engine is asked for."""
+    matrix, bias = mechanics(spec, articulated_object.scene.mechanism.rest)
+    return joint_dynamics(articulated_object, np.diag(matrix).copy(), bias)

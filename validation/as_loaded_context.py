@@ -12,8 +12,10 @@ from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.engine_file import Unloadable, velocity_probe
-from kinematify.simulation.engines import ENGINES, load_file
+from kinematify.simulation.engine import Unloadable
+from kinematify.simulation.engine_runs import drive, overlaps, push_joint, release, rest, row, script, velocity_probe
+from kinematify.simulation.engines import ENGINES, open_engine
+from kinematify.simulation.world import OpenedFile
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -23,13 +25,8 @@ if TYPE_CHECKING:
     from kinematify.geometry.sweep import Sweeper
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Joint, Robot
-    from kinematify.simulation.engine_file import (
-        EngineFile,
-        EngineRun,
-        Overlap,
-        Push,
-        Pushed,
-    )
+    from kinematify.simulation.engine import Engine
+    from kinematify.simulation.engine_runs import EngineRun, Overlap, Push, Pushed
     from kinematify.validation.stage import StageRequest
 
 _LEAST_SIZE = 0.01
@@ -109,12 +106,12 @@ class AsLoadedContext:
         return "absolute paths of the meshes" if self.native is None else "none of the pictures and skins it refuses"
 
     @cached_property
-    def bare(self) -> EngineFile | Unloadable:
+    def bare(self) -> Engine | Unloadable:
         """The file in the engine as it is, or what the engine says against it."""
         return self._opened(self.native or self.request.urdf)
 
     @cached_property
-    def loading(self) -> EngineFile | Unloadable:
+    def loading(self) -> Engine | Unloadable:
         """The file in the engine, from a copy as `copied` says where it is not opened without."""
         resolved = self.request.resolved
         if not isinstance(self.bare, Unloadable) or self.bare.floats or resolved is None:
@@ -126,17 +123,17 @@ class AsLoadedContext:
         copy = self._opened(resolved)
         if isinstance(copy, Unloadable):
             return self.bare
-        copy.rename(resolved.name)
+        copy.facts["path"] = resolved.name
         return copy
 
-    def _opened(self, urdf: Path) -> EngineFile | Unloadable:
+    def _opened(self, urdf: Path) -> Engine | Unloadable:
         try:
             root = self.mechanism.links[int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])]
-            loaded = load_file(self.engine, urdf, root)
+            loaded = open_engine(self.engine, OpenedFile(urdf=urdf, root=root))
         except Unloadable as error:
             return error
         known = set(loaded.joints) <= set(self.mechanism.joints)
-        return loaded if known or not self.floats else Unloadable(reproduction=loaded.script("joints"))
+        return loaded if known or not self.floats else Unloadable(reproduction=script(loaded, "joints"))
 
     @property
     def floats(self) -> bool:
@@ -144,7 +141,7 @@ class AsLoadedContext:
         return self.native is not None or any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
 
     @property
-    def loaded(self) -> EngineFile:
+    def loaded(self) -> Engine:
         """The file in the engine, once it is there."""
         assert not isinstance(self.loading, Unloadable)
         return self.loading
@@ -200,7 +197,7 @@ class AsLoadedContext:
     @cached_property
     def overlaps(self) -> tuple[Overlap, ...]:
         """At rest, the deepest first, of links that can move against each other: nothing pushes others apart."""
-        found = self.loaded.overlaps(self.values)
+        found = overlaps(self.loaded, self.values)
         return tuple(item for item in found if self._body(item.links[0]) != self._body(item.links[1]))
 
     def _body(self, link: str) -> int:
@@ -214,12 +211,12 @@ class AsLoadedContext:
     @cached_property
     def passive_run(self) -> EngineRun:
         """Nothing is done."""
-        return self.loaded.rest(self.values, self.settings.seconds, contacts=True)
+        return rest(self.loaded, self.values, self.settings.seconds, contacts=True)
 
     @cached_property
     def left_without_contacts(self) -> EngineRun:
         """The same where no links touch each other: what gravity does alone."""
-        return self.loaded.rest(self.values, self.settings.seconds, contacts=False)
+        return rest(self.loaded, self.values, self.settings.seconds, contacts=False)
 
     def way(self, run: EngineRun, travel: Travel) -> np.ndarray:
         """Return the values of a joint in a run [rad or m], shape (steps,)."""
@@ -269,7 +266,7 @@ class AsLoadedContext:
         if run.without_contacts is not None and self.reaches_end(run, run.without_contacts):
             return True
         target = run.push.target
-        driven = self.loaded.motor(run.travel.joint, run.values, target, self.settings.seconds)
+        driven = drive(self.loaded, run.travel.joint, run.values, target, self.settings.seconds)
         return self.reaches_end(replace(run, end=target), driven)
 
     def stopped_by(self, run: VelocityProbe) -> tuple[Overlap, float] | None:
@@ -284,7 +281,7 @@ class AsLoadedContext:
             values = dict(run.values)
             for name, ratio in self.ratios(travel).items():
                 values[name] = run.values[name] + ratio * (value - travel.rest)
-            found = self.between(travel, self.loaded.overlaps(values))
+            found = self.between(travel, overlaps(self.loaded, values))
             if found is not None:
                 return found, value
         return None
@@ -292,12 +289,14 @@ class AsLoadedContext:
     @cached_property
     def inertias(self) -> dict[str, float]:
         """Return what a force at each joint moves at rest [kg or kg m^2]."""
-        return dict(zip(self.loaded.joints, self.loaded.inertias(self.values).tolist(), strict=True))
+        return dict(zip(self.loaded.joints, self.loaded.inertias(row(self.loaded, self.values)).tolist(), strict=True))
 
     @cached_property
     def max_safe_force(self) -> dict[str, float]:
         """Largest force at each joint at rest that the engine answers rightly [N or N m]."""
-        return dict(zip(self.loaded.joints, self.loaded.max_safe_force(self.values).tolist(), strict=True))
+        return dict(
+            zip(self.loaded.joints, self.loaded.max_safe_force(row(self.loaded, self.values)).tolist(), strict=True)
+        )
 
     def ratios(self, travel: Travel) -> dict[str, float]:
         """Return the motion of a joint, 1, and of those that mimic it."""
@@ -328,7 +327,7 @@ class AsLoadedContext:
         joint = self.robot.joint_by_name[travel.joint]
         resistance = {"resistance": joint.friction or 0.0, "damping": joint.damping or 0.0}
         push = self._push(travel, (travel.rest, end), self.strength(travel), **resistance)
-        pushed = self.loaded.push(push, self.values, contacts=True)
+        pushed = push_joint(self.loaded, push, self.values, contacts=True)
         run = VelocityProbe(
             travel=travel, values=self.values, push=push, pushed=pushed, end=end, free=self.free(travel) is not None
         )
@@ -338,12 +337,12 @@ class AsLoadedContext:
         run = replace(run, end=seen) if abs(seen - travel.rest) > self._nothing(travel) else replace(run, free=False)
         if self.reaches_end(run, pushed.farthest):
             return run
-        return replace(run, without_contacts=self.loaded.push(push, self.values, contacts=False).farthest)
+        return replace(run, without_contacts=push_joint(self.loaded, push, self.values, contacts=False).farthest)
 
     def by_motor(self, travel: Travel, end: float, effort: float) -> float:
         """Value that a joint gets to under gravity by no more than an effort, the others held [rad or m]."""
         push = self._push(travel, (travel.rest, end), effort, effort)
-        return self.loaded.push(push, self.values, contacts=True, gravity=True).farthest
+        return push_joint(self.loaded, push, self.values, contacts=True, gravity=True).farthest
 
     def strength(self, travel: Travel) -> float:
         """Force of the hand [N or N m]."""
@@ -391,7 +390,7 @@ class AsLoadedContext:
             travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, most=force, patience=_YIELDING
         )
         values = self._values({travel.joint: end})
-        pushed = self.loaded.push(push, values, contacts=False)
+        pushed = push_joint(self.loaded, push, values, contacts=False)
         return VelocityProbe(travel=travel, values=values, push=push, pushed=pushed, end=end)
 
     @cached_property
@@ -407,7 +406,7 @@ class AsLoadedContext:
     @cached_property
     def released(self) -> EngineRun:
         """All joints given a push and let go."""
-        return self.loaded.release(self.values, self.speeds, self.settings.release_seconds)
+        return release(self.loaded, self.values, self.speeds, self.settings.release_seconds)
 
     @cached_property
     def fall(self) -> float:

@@ -18,9 +18,10 @@ from kinematify.manipulation.plan_request import Hold
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import fixed_together, rest_configuration
-from kinematify.simulation.engines import open_world
+from kinematify.simulation.engine_runs import NOT_NUMBERS
+from kinematify.simulation.engines import open_engine
 from kinematify.simulation.prepared import prepare
-from kinematify.simulation.world import Grip, PlacedModel, PlacedRobot, WorldSpec
+from kinematify.simulation.world import ROBOT, Grip, PlacedModel, PlacedRobot, WorldSpec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,12 +33,10 @@ if TYPE_CHECKING:
     from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
-    from kinematify.simulation.engines import EngineWorld
+    from kinematify.simulation.engine import Engine
 
 
 _FRAME_RATE = 25.0  # states that are kept for the film [Hz]
-_BLOWN_UP = {"badqpos", "badqvel", "badqacc"}
-"""Warnings of MuJoCo after which a run counts for nothing."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -237,7 +236,9 @@ class _Run:
         self._opened = self._object.joints.index(self._motion.joint)
         self._fingers = self._motion.robot.fingers_at(self._motion.grasp.spread)
         self._squeezed = self._squeeze()
-        self.world: EngineWorld = open_world(engine, self._spec(loaded))
+        self.world: Engine = open_engine(engine, self._spec(loaded))
+        gripped = {*(ROBOT + link for link in loaded.hand_links), *loaded.held_links}
+        self._gripped = np.array([name in gripped for name in self.world.links])
         leaders = np.array([list(self._start.values())])
         self.world.place(self._object.all_values(leaders)[0], np.concatenate([self._motion.reach[0], self._fingers]))
 
@@ -291,21 +292,29 @@ class _Run:
             if step == reference.grasped and self._hold is Hold.CONTACT:
                 self._fingers = self._squeezed
             if step == reference.pulls:
-                world.release((self._motion.joint,))
+                world.unlock((self._motion.joint,))
                 if self._hold is Hold.WELD:
                     world.weld()
             world.command(np.concatenate([wanted, self._fingers]), reference.speed[step])
             world.step()
-            if not world.stable() or _BLOWN_UP & world.warnings().keys():
+            if not world.stable() or world.warnings().keys() & NOT_NUMBERS:
                 break
-            values[step] = world.values()[self._opened]
-            if (contact := world.deeper(self._depth)) is not None:
-                self._depth, self._deepest = contact
+            values[step] = world.state()[0][self._opened]
+            self._look_for_deeper()
             if step % every == 0 or step == steps - 1:
-                both = (self._robot, world.robot_values()), (self._object, world.values())
+                both = (self._robot, world.state(robot=True)[0]), (self._object, world.state()[0])
                 robot, articulated = (dict(zip(of.joints, at.tolist(), strict=True)) for of, at in both)
                 self._frames.append(Frame(time=step * settings.time_step, robot=robot, object=articulated))
         return values
+
+    def _look_for_deeper(self) -> None:
+        """Keep the deepest contact of the robot, that of the hand with what it holds left out."""
+        pairs, depths = self.world.contacts()
+        depths = np.where(self._gripped[pairs].all(axis=1), 0.0, depths)
+        if depths.max(initial=0.0) > self._depth:
+            deepest = int(depths.argmax())
+            other, link = (self.world.links[number] for number in sorted(pairs[deepest]))  # the robot's come last
+            self._depth, self._deepest = float(depths[deepest]), (link.removeprefix(ROBOT), other)
 
     def judged(self, values: FloatArray, reference: Reference, engine: str) -> Execution:
         """Judge the run by the value of the object's joint after every step [rad or m], shape (steps,)."""

@@ -10,16 +10,10 @@ from kinematify.errors import EnvironmentFault
 from kinematify.versions import is_installed, not_installed, require
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
     from types import ModuleType
 
-    from kinematify.simulation.engine_file import EngineFile
-    from kinematify.simulation.mujoco_engine import MujocoWorld
-    from kinematify.simulation.pybullet_engine import PybulletWorld
-    from kinematify.simulation.world import WorldSpec
-
-    EngineWorld = MujocoWorld | PybulletWorld
+    from kinematify.simulation.engine import Engine
+    from kinematify.simulation.world import OpenedFile, WorldSpec
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,13 +34,12 @@ class EngineEntry:
     """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
     executed and environments run in it."""
     floor: bool = False
-    """It sets an object on a floor (`stand`)."""
+    """It sets a file on a floor (`OpenedFile.on_floor`)."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
     in_module: str | None = None
-    """Names its class of an opened file `FILE`, and that of a world `WORLD` if it `holds`; None:
-    ``kinematify.simulation.NAME_engine``."""
+    """Has its class as `ENGINE`; None: ``kinematify.simulation.NAME_engine``."""
 
     @property
     def module(self) -> str:
@@ -93,55 +86,19 @@ def why_not_run(name: str) -> str:
     return not_installed(f"{ENGINES[name].title} did not run: it", *ENGINES[name].packages)
 
 
-def open_world(name: str, spec: WorldSpec) -> EngineWorld:
-    """Build a world that runs.
+def open_engine(name: str, content: OpenedFile | WorldSpec) -> Engine:
+    """Open a file or a world in an engine.
 
     Args:
-        name: Of an engine with `EngineEntry.holds`.
-        spec: What is in it.
+        name: Of `ENGINES`; of a world one with `EngineEntry.holds`, of a file on a floor one with `EngineEntry.floor`.
+        content: What is in it.
 
     Raises:
         EnvironmentFault: The engine is not installed.
-        Unloadable: It cannot load a model.
+        Unloadable: The engine does not open the file, or cannot load a model.
     """
-    world: EngineWorld = _module_of(name).WORLD(spec)
-    return world
-
-
-def load_file(name: str, urdf: Path, root: str) -> EngineFile:
-    """Load a file into an engine as users do, with the engine's own defaults.
-
-    Args:
-        name: Of `ENGINES`.
-        urdf: The file.
-        root: Name of its first link.
-
-    Raises:
-        EnvironmentFault: The engine is not installed.
-        Unloadable: The engine does not open the file.
-    """
-    loaded: EngineFile = _module_of(name).FILE(urdf, root)
-    return loaded
-
-
-def stand(name: str, urdf: Path, values: Mapping[str, float], seconds: float) -> dict[str, float]:
-    """Set a file on a floor with its lowest point, and leave it alone.
-
-    Args:
-        name: Of an engine that `EngineEntry.floor`.
-        urdf: The file.
-        values: Of its joints [rad or m].
-        seconds: How long.
-
-    Returns:
-        How far its base has moved [m] and turned [rad], how deep the deepest contact is [m], and how many contacts
-        there are with the floor.
-
-    Raises:
-        Unloadable: The engine does not build it, such as without any mass.
-    """
-    run: dict[str, float] = _module_of(name).stand(urdf, values, seconds)
-    return run
+    opened: Engine = _module_of(name).ENGINE(content)
+    return opened
 
 
 def _module_of(name: str) -> ModuleType:

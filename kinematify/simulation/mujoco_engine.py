@@ -1,6 +1,6 @@
-"""MuJoCo: files as `MjModel.from_xml_path` loads them, an object on a floor, and worlds (`simulation/world.py`).
+"""MuJoCo: files as `MjModel.from_xml_path` loads them, on a floor too, and worlds (`simulation/world.py`).
 
-A world is compiled once for a process; worlds are copies of that.
+A world is compiled once for a process; engines are copies of that.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from copy import copy
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import product
 from typing import TYPE_CHECKING, ClassVar
 
@@ -16,13 +16,14 @@ import mujoco
 import numpy as np
 from lxml import etree
 
-from kinematify.robot.transforms import pose_at, quaternion_of
+from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY, PIN_SOLIMP, PIN_SOLREF
-from kinematify.simulation.engine_file import EngineFile, Unloadable
+from kinematify.simulation.engine import Engine, Unloadable
 from kinematify.simulation.world import (
     FLOOR,
     ROBOT,
     ObjectState,
+    OpenedFile,
     PlacedModel,
     PlacedRobot,
     PullingHand,
@@ -31,10 +32,10 @@ from kinematify.simulation.world import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import LeaderMechanism
 
 _RESERVED = "world"
@@ -295,260 +296,15 @@ def _fill_mass_matrix(model: mujoco.MjModel, data: mujoco.MjData, matrix: FloatA
         mujoco.mj_fullM(model, data, matrix)
 
 
-class MujocoWorld:
-    """World in MuJoCo."""
-
-    def __init__(self, spec: WorldSpec) -> None:
-        """Copy the compiled world, so that it can be changed."""
-        compiled, mechanism = _compiled(spec), spec.object.mechanism
-        self._spec, self.model = spec, copy(compiled.model)
-        self.data = mujoco.MjData(self.model)
-        self._qpos, self._dof = _addresses(self.model, _OBJECT, mechanism.joints)
-        leaders = [mechanism.joints.index(travel.joint) for travel in mechanism.travels]
-        self._leader_qpos, self._leader_dof = self._qpos[leaders], self._dof[leaders]
-        self._body = self._bodies(_OBJECT, compiled.object_links)
-        self._root = int(self._body[mechanism.links.index(mechanism.robot.root)])
-        self._geoms = np.flatnonzero(np.isin(self.model.geom_bodyid, self._body))
-        self._robot_body = self._bodies(ROBOT, compiled.robot_links)
-        if spec.robot is not None:
-            self._driven = _addresses(self.model, ROBOT, spec.robot.driven)
-            self._robot_qpos = _addresses(self.model, ROBOT, spec.robot.mechanism.joints)[0]
-            self._tool = int(self.model.body(ROBOT + spec.robot.tool).id)
-        self._keep()
-
-    def _bodies(self, prefix: str, links: Sequence[str]) -> IntArray:
-        return np.array([int(self.model.body(prefix + name).id) for name in links], dtype=np.int64)
-
-    def _keep(self) -> None:
-        """Remember what factors refer to."""
-        model = self.model
-        self._damping, self._friction = model.dof_damping[self._dof].copy(), model.dof_frictionloss[self._dof].copy()
-        self._mass, self._moments = model.body_mass[self._body].copy(), model.body_inertia[self._body].copy()
-        self._surface = model.geom_friction[self._geoms].copy()
-        self._place, self._turn = model.body_pos[self._root].copy(), model.body_quat[self._root].copy()
-        self._masses_drawn = False
-
-    def mechanics(self, leaders: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Mass matrix (J, J) and holding torques (J,) of the object's joints at values of its leaders."""
-        model, data = self.model, mujoco.MjData(self.model)
-        data.qpos[self._qpos] = self._spec.object.mechanism.all_values(leaders[None])[0]
-        mujoco.mj_forward(model, data)
-        matrix = np.zeros((model.nv, model.nv))
-        _fill_mass_matrix(model, data, matrix)
-        return matrix[np.ix_(self._dof, self._dof)], data.qfrc_bias[self._dof].copy()
-
-    def resist(self, damping: FloatArray, friction: FloatArray) -> None:
-        """Give the object's joints damping and friction."""
-        model, dof, stiff = self.model, self._dof, 2.0 * self._spec.step
-        joints = model.dof_jntid[dof]
-        model.dof_damping[dof], model.dof_frictionloss[dof] = damping, friction
-        # As it is, MuJoCo's friction creeps: a light handle would sink by 7 deg in a second.
-        # And its ends of ranges give: a hand that presses a lid shut would push it in by 20 deg.
-        model.dof_solimp[dof, :2], model.dof_solref[dof, 0] = _STIFF, stiff
-        model.jnt_solimp[joints, :2], model.jnt_solref[joints, 0] = _STIFF, stiff
-        model.jnt_actfrclimited[:] = 0
-        self._keep()
-
-    def take(self, hand: PullingHand) -> None:
-        """Give the held point a hand."""
-        model = self.model
-        if not hand.spring:
-            model.actuator_gainprm[:, 0] = hand.force
-            return
-        model.actuator_biastype[:] = mujoco.mjtBias.mjBIAS_AFFINE
-        model.actuator_gainprm[:, 0], model.actuator_biasprm[:, 1] = hand.stiffness, -hand.stiffness
-        model.actuator_biasprm[:, 2] = -hand.damping
-        model.actuator_forcelimited[:] = 1
-        model.actuator_forcerange[:] = hand.force * np.array([-1.0, 1.0])
-
-    def vary(self, drawn: Variation) -> None:
-        """Change the object."""
-        model = self.model
-        model.dof_damping[self._dof] = drawn.damping * self._damping
-        model.dof_frictionloss[self._dof] = drawn.friction * self._friction
-        model.geom_friction[self._geoms] = drawn.surface * self._surface
-        T = drawn.T_root
-        model.body_pos[self._root] = T[:3, :3] @ self._place + T[:3, 3]
-        turn = np.zeros(4)
-        mujoco.mju_mat2Quat(turn, T[:3, :3].ravel())
-        mujoco.mju_mulQuat(model.body_quat[self._root], turn, self._turn)
-        masses_drawn = bool((drawn.mass != 1.0).any())
-        if masses_drawn or self._masses_drawn:
-            model.body_mass[self._body] = drawn.mass * self._mass
-            model.body_inertia[self._body] = drawn.mass[:, None] * self._moments
-            mujoco.mj_setConst(model, self.data)
-        self._masses_drawn = masses_drawn
-
-    def place(self, values: FloatArray, robot: FloatArray | None = None) -> None:
-        """Set all joints and stop them."""
-        data = self.data
-        mujoco.mj_resetData(self.model, data)
-        data.qpos[self._qpos] = values
-        if robot is not None and self._spec.robot is not None:
-            data.qpos[self._robot_qpos] = self._spec.robot.mechanism.values_at_rest
-            data.qpos[self._driven[0]] = data.ctrl[:] = robot
-            if self.model.na:
-                data.act[:] = robot
-        mujoco.mj_forward(self.model, data)
-
-    def pull(self, command: FloatArray) -> None:
-        """Command the hand."""
-        self.data.ctrl[:] = command
-        # As rollouts of many environments begin, so that both give the same numbers.
-        self.data.qacc_warmstart[:] = 0.0
-
-    def command(self, values: FloatArray, speeds: FloatArray | None = None) -> None:
-        """Command the servos; with a speed they run ahead of the lag by damping over stiffness."""
-        self.data.ctrl[:] = values
-        if speeds is not None and self._spec.robot is not None:
-            self.data.ctrl[: len(speeds)] += speeds / (np.pi * self._spec.robot.settings.servo_frequency)
-
-    def step(self, count: int = 1) -> None:
-        """Simulate so many steps."""
-        mujoco.mj_step(self.model, self.data, nstep=count)
-
-    def release(self, joints: Iterable[str]) -> None:
-        """Make locked joints of the object go."""
-        for name in joints:
-            self.data.eq_active[self.model.equality(_LATCH + _OBJECT + name).id] = 0
-
-    def weld(self) -> None:
-        """Fix the tool to the part where it now is."""
-        model, data, weld = self.model, self.data, self.model.equality(_WELD).id
-        tool, part = model.eq_obj1id[weld], model.eq_obj2id[weld]
-        first, second = data.xmat[tool].reshape(3, 3), data.xmat[part].reshape(3, 3)
-        # The anchor, which is the tool's origin, in the frame of the part and in that of the tool.
-        model.eq_data[weld, :3] = second.T @ (data.xpos[tool] - data.xpos[part])
-        model.eq_data[weld, 3:6] = 0.0
-        model.eq_data[weld, 6:10] = quaternion_of(first.T @ second)
-        model.eq_data[weld, 10] = 1.0
-        data.eq_active[weld] = 1
-
-    def state(self) -> ObjectState:
-        """State of the object after the last step."""
-        return self.split(self.data.qpos, self.data.qvel, self.data.sensordata)
-
-    def split(self, qpos: FloatArray, qvel: FloatArray, sensors: FloatArray) -> ObjectState:
-        """The same of states in rows, shapes (..., nq), (..., nv), (..., sensors)."""
-        return ObjectState(
-            values=qpos[..., self._leader_qpos],
-            speeds=qvel[..., self._leader_dof],
-            hold=sensors[..., 0:3],
-            anchor=sensors[..., 3:6],
-            axis=sensors[..., 6:9],
-        )
-
-    def values(self) -> FloatArray:
-        """Values of all joints of the object."""
-        return np.asarray(self.data.qpos[self._qpos])
-
-    def robot_values(self) -> FloatArray:
-        """Values of all joints of the robot."""
-        return np.asarray(self.data.qpos[self._robot_qpos])
-
-    def driven(self) -> tuple[FloatArray, FloatArray]:
-        """Values and speeds of the robot's joints with servos."""
-        return self.data.qpos[self._driven[0]], self.data.qvel[self._driven[1]]
-
-    def tool(self) -> FloatArray:
-        """Pose of the tool."""
-        pose: FloatArray = self._poses([self._tool])[0]
-        return pose
-
-    def touch(self) -> FloatArray:
-        """Force of each finger on the held body."""
-        assert self._spec.robot is not None
-        forces = self.data.sensordata[9:].reshape(len(self._spec.robot.fingers), -1, 3).sum(axis=1)
-        return np.asarray(np.sqrt(np.vecdot(forces, forces)))
-
-    def link_poses(self) -> dict[str, FloatArray]:
-        """World poses of the links of both."""
-        robot = () if self._spec.robot is None else [ROBOT + name for name in self._spec.robot.mechanism.links]
-        names = (*self._spec.object.mechanism.links, *robot)
-        return dict(zip(names, self._poses([*self._body, *self._robot_body]), strict=True))
-
-    def _poses(self, bodies: Sequence[int]) -> FloatArray:
-        """World poses of bodies, shape (n, 4, 4)."""
-        found = np.tile(np.eye(4), (len(bodies), 1, 1))
-        found[:, :3, :3], found[:, :3, 3] = self.data.xmat[bodies].reshape(-1, 3, 3), self.data.xpos[bodies]
-        return found
-
-    def depth(self) -> float:
-        """Return how much deeper than allowed two shapes are in each other at most."""
-        if not self.data.ncon:
-            return 0.0
-        contact = self.data.contact
-        return max(0.0, float((contact.includemargin - contact.dist).max()))
-
-    def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
-        """Deepest contact of the robot, if it is deeper than that."""
-        if not self.data.ncon:
-            return None
-        geoms = self.data.contact.geom
-        depths = np.where(self._gripped[geoms].all(axis=1), 0.0, -self.data.contact.dist)
-        deepest = int(depths.argmax())
-        if depths[deepest] <= than:
-            return None
-        bodies = (self.model.body(self.model.geom_bodyid[geom]).name for geom in geoms[deepest])
-        link, other = sorted(bodies, key=lambda name: not name.startswith(ROBOT))
-        other = FLOOR if other == "world" else other.removeprefix(_OBJECT)
-        return float(depths[deepest]), (link.removeprefix(ROBOT), other)
-
-    @cached_property
-    def _gripped(self) -> BoolArray:
-        """Which shapes belong to the hand or to what it holds, shape (geoms,)."""
-        grip = self._spec.grip
-        links = set() if grip is None else {ROBOT + link for link in grip.hand} | {_OBJECT + link for link in grip.part}
-        return np.array([self.model.body(body).name in links for body in self.model.geom_bodyid])
-
-    def stable(self) -> bool:
-        """True if all numbers are finite."""
-        # What is wrong with a place was wrong with a speed before.
-        return math.isfinite(self.data.qvel.sum())
-
-    def warnings(self) -> dict[str, int]:
-        """MuJoCo's warnings since `place`."""
-        numbers = self.data.warning.number
-        if not numbers.any():
-            return {}
-        return {_WARNINGS[k]: int(number) for k, number in enumerate(numbers) if number}
-
-    def close(self) -> None:
-        """Nothing is held that Python does not free."""
-
-
-_FAR = 1e3
-"""Height above the floor from which an object is let down [m]."""
-
-
-def stand(urdf: Path, values: Mapping[str, float], seconds: float) -> dict[str, float]:
-    """Implement `engines.stand`."""
-    try:
-        world, source = mujoco.MjSpec(), mujoco.MjSpec.from_file(str(urdf))
-        source.compiler.fusestatic = False
-        world.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0])
-        base = world.worldbody.add_body()
-        base.add_freejoint()
-        world.attach(source, prefix=_OBJECT, frame=base.add_frame())
-        model = world.compile()
-    except ValueError as error:
-        raise Unloadable(str(error)) from error
-    data = mujoco.MjData(model)
-    for name, value in values.items():
-        data.qpos[model.joint(_OBJECT + name).qposadr] = value
-    data.qpos[2] = _FAR
+def mechanics(spec: WorldSpec, leaders: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the mass matrix (J, J) and holding torques (J,) of the object's joints at values of its leaders."""
+    model, mechanism = _compiled(spec).model, spec.object.mechanism
+    data, (qpos, dof) = mujoco.MjData(model), _addresses(model, _OBJECT, mechanism.joints)
+    data.qpos[qpos] = mechanism.all_values(leaders[None])[0]
     mujoco.mj_forward(model, data)
-    gaps = [mujoco.mj_geomDistance(model, data, 0, geom, 2.0 * _FAR, None) for geom in range(1, model.ngeom)]
-    data.qpos[2] -= min(gaps, default=_FAR)
-    start, turn = data.qpos[:7].copy(), np.zeros(3)
-    mujoco.mj_step(model, data, nstep=round(seconds / model.opt.timestep))
-    mujoco.mju_subQuat(turn, data.qpos[3:7], start[3:])
-    return {
-        "moved": float(np.linalg.norm(data.qpos[:3] - start[:3])),
-        "turned": float(np.linalg.norm(turn)),
-        "deepest": max((-float(contact.dist) for contact in data.contact), default=0.0),
-        "on_floor": float(sum(0 in contact.geom for contact in data.contact)),
-    }
+    matrix = np.zeros((model.nv, model.nv))
+    _fill_mass_matrix(model, data, matrix)
+    return matrix[np.ix_(dof, dof)], data.qfrc_bias[dof].copy()
 
 
 _OPEN = """import mujoco, numpy as np
@@ -564,6 +320,9 @@ _LOAD = """import mujoco, numpy as np
 model = mujoco.MjModel.from_xml_path({path!r}); data = mujoco.MjData(model)
 {held}data.qpos{q}[:] = {values}; mujoco.mj_forward(model, data); rest = data.qpos{q}.copy(); push = 0.0
 """
+_BASE = "kinematify base"
+_FAR = 1e3
+"""Height above the floor from which an object is let down [m]."""
 _HELD = 1e9
 """Inertia of a base that floats, which so stays where it is [kg or kg m^2]; PyBullet is asked for a fixed one."""
 _NO_CONTACTS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT\n"
@@ -604,9 +363,21 @@ print(max(seen) - seen[0])
 )
 
 
-class MujocoFile(EngineFile):
-    """Raw model: a file as `MjModel.from_xml_path` loads it."""
+def _on_floor(urdf: str) -> mujoco.MjModel:
+    """Compile a file whose base is free, and a floor."""
+    world, source = mujoco.MjSpec(), mujoco.MjSpec.from_file(urdf)
+    source.compiler.fusestatic = False
+    world.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0])
+    base = world.worldbody.add_body()
+    base.add_freejoint()
+    world.attach(source, prefix=_OBJECT, frame=base.add_frame())
+    return world.compile()
 
+
+class MujocoEngine(Engine):
+    """MuJoCo. Its model and data may be looked at; links that fixed joints join are one in a URDF without a world."""
+
+    title = "MuJoCo"
     code: ClassVar = {
         "joints": _JOINTS,
         "overlap": _OVERLAP,
@@ -615,123 +386,286 @@ class MujocoFile(EngineFile):
         "push_alone": _PUSH.replace("{off}", _NO_CONTACTS),
         "release": _RELEASE,
     }
+    keyed = False
+    look_steps = 1
 
-    def __init__(self, urdf: Path, root: str) -> None:
-        """Load it; a base that floats is held, and floors of a scene are left out.
+    def __init__(self, content: OpenedFile | WorldSpec) -> None:
+        """Open a file, its base held, floors of a scene left out; or copy a compiled world, so that it can be changed.
 
         Raises:
-            Unloadable: MuJoCo does not open it, or moves a link in other ways than by turning or sliding.
+            Unloadable: MuJoCo does not open it, or moves a link of a file in other ways than by turning or sliding.
         """
+        self._on_floor = isinstance(content, OpenedFile) and content.on_floor
+        self._servo_rate: float | None = None
+        self._moved, self._masses_drawn = False, False
+        self._offsets: dict[int, FloatArray] = {}
+        self.facts, self.link_code = {}, {}
+        if isinstance(content, WorldSpec):
+            self._open_world(content)
+        else:
+            self._open_file(content)
+        model = self.model
+        self.data, option = mujoco.MjData(model), model.opt
+        self._flags, self._gravity = option.disableflags, option.gravity.copy()
+        self.time_step = float(option.timestep)
+        self.joint_code = {name: number for number, name in enumerate(self.joints)}
+
+    def _open_file(self, file: OpenedFile) -> None:
+        path, prefix = str(file.urdf), _OBJECT if file.on_floor else ""
         try:
-            self._model = model = mujoco.MjModel.from_xml_path(str(urdf))
+            self.model = model = _on_floor(path) if file.on_floor else mujoco.MjModel.from_xml_path(path)
         except ValueError as error:
-            raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
+            raise Unloadable(str(error), _OPEN.format(path=path)) from error
         base = int(model.njnt > 0 and model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE)
         if not model.nq - 7 * base == model.nv - 6 * base == model.njnt - base:
-            raise Unloadable(reproduction=_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
-        self._q, self._v = slice(7 * base, None), slice(6 * base, None)
-        held = f"model.dof_armature[:6] = {_HELD:g}; " * base
+            raise Unloadable(reproduction=_OPEN.format(path=path) + "print(model.jnt_type)\n")
+        self._qpos, self._dof = np.arange(7 * base, model.nq), np.arange(6 * base, model.nv)
+        held = "" if file.on_floor else self._hold_still(base)
+        self.facts = {"path": path, "held": held, "q": "[7:]" * base, "v": "[6:]" * base}
+        model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        names = [model.body(k).name.removeprefix(prefix) for k in range(1, model.nbody)]
+        self.root = _BASE if file.on_floor else file.root
+        names[: file.on_floor] = [_BASE] * file.on_floor
+        world = FLOOR if file.on_floor else "world" if file.root in names else file.root
+        self.links, self.link_code = (world, *names), {world: "world"}
+        self._bodies = np.array([k for k in range(1, model.nbody) if self.links[k]], dtype=np.int64)
+        # A link's frame lies at its joint, which an MJCF may place elsewhere in the body.
+        last = model.body_jntadr + model.body_jntnum - 1
+        at = {k: model.jnt_pos[last[body]] for k, body in enumerate(self._bodies) if model.body_jntnum[body]}
+        self._offsets = {k: place for k, place in at.items() if place.any()}
+        self.joints = tuple(model.joint(k).name.removeprefix(prefix) for k in range(base, model.njnt))
+        ranges = zip(self.joints, model.jnt_limited[base:], model.jnt_range[base:].tolist(), strict=True)
+        self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
+
+    def _hold_still(self, base: int) -> str:
+        """Hold a base that floats, and leave planes and height fields out, which come first; the code of that."""
+        model, held = self.model, f"model.dof_armature[:6] = {_HELD:g}; " * base
         model.dof_armature[: 6 * base] = _HELD
-        # Planes and height fields, which come first.
         floors = np.flatnonzero(
             (model.geom_bodyid == 0) & (model.geom_type < mujoco.mjtGeom.mjGEOM_SPHERE.value)
         ).tolist()
         if floors:
             model.geom_contype[floors] = model.geom_conaffinity[floors] = 0
             held += f"model.geom_contype[{floors}] = model.geom_conaffinity[{floors}] = 0; "
-        self._file = {"path": str(urdf), "held": held, "q": "[7:]" * base, "v": "[6:]" * base}
-        self._data, option = mujoco.MjData(self._model), self._model.opt
-        self._flags, self._gravity = option.disableflags, option.gravity.copy()
-        option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-        self._bodies = {k: model.body(k).name for k in range(1, model.nbody)}
-        self._world = "world" if root in self._bodies.values() else root
-        self._root = root
-        self.joints = tuple(self._model.joint(k).name for k in range(base, self._model.njnt))
-        ranges = zip(self.joints, self._model.jnt_limited[base:], self._model.jnt_range[base:].tolist(), strict=True)
-        self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
-        self.time_step = float(option.timestep)
+        return held
 
-    def begin(
+    def _open_world(self, spec: WorldSpec) -> None:
+        compiled, mechanism = _compiled(spec), spec.object.mechanism
+        self.model = model = copy(compiled.model)
+        self.root, self.joints, self.limits = mechanism.robot.root, mechanism.joints, {}
+        self._qpos, self._dof = _addresses(model, _OBJECT, mechanism.joints)
+        leaders = [mechanism.joints.index(travel.joint) for travel in mechanism.travels]
+        self._leader_qpos, self._leader_dof = self._qpos[leaders], self._dof[leaders]
+        self._body = self._ids(_OBJECT, compiled.object_links)
+        self._root = int(self._body[mechanism.links.index(mechanism.robot.root)])
+        self._geoms = np.flatnonzero(np.isin(model.geom_bodyid, self._body))
+        self._bodies = np.concatenate([self._body, self._ids(ROBOT, compiled.robot_links)])
+        names: tuple[str, ...] = mechanism.links
+        if spec.robot is not None:
+            robot = spec.robot.mechanism
+            names = (*names, *(ROBOT + name for name in robot.links))
+            self._driven = _addresses(model, ROBOT, spec.robot.driven)
+            self._robot_qpos, self._robot_dof = _addresses(model, ROBOT, robot.joints)
+            self._robot_rest, self._fingers = robot.values_at_rest, len(spec.robot.fingers)
+            self._servo_rate = np.pi * spec.robot.settings.servo_frequency
+        links = [FLOOR] * model.nbody
+        for body, name in zip(self._bodies.tolist(), names, strict=True):
+            links[body] = name
+        self.links = tuple(links)
+        self._keep()
+
+    def _ids(self, prefix: str, links: Sequence[str]) -> IntArray:
+        return np.array([int(self.model.body(prefix + name).id) for name in links], dtype=np.int64)
+
+    def _keep(self) -> None:
+        """Remember what factors refer to."""
+        model = self.model
+        self._damping, self._friction = model.dof_damping[self._dof].copy(), model.dof_frictionloss[self._dof].copy()
+        self._mass, self._moments = model.body_mass[self._body].copy(), model.body_inertia[self._body].copy()
+        self._surface = model.geom_friction[self._geoms].copy()
+        self._place, self._turn = model.body_pos[self._root].copy(), model.body_quat[self._root].copy()
+        self._masses_drawn = False
+
+    def place(
         self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
+        values: FloatArray,
+        robot: FloatArray | None = None,
         *,
-        contacts: bool,
+        speeds: FloatArray | None = None,
+        contacts: bool = True,
         gravity: bool = True,
         released: Sequence[int] | None = None,
     ) -> None:
-        """Implement `EngineFile`; MuJoCo gives a URDF no motors."""
+        """Implement `Engine`; MuJoCo gives a URDF no motors."""
         del released
-        model, data, option = self._model, self._data, self._model.opt
+        model, data, option = self.model, self.data, self.model.opt
         option.disableflags, option.gravity[:] = self._flags, self._gravity
         mujoco.mj_resetData(model, data)
-        data.qpos[self._q] = self.row(values)
+        data.qpos[self._qpos] = values
+        if robot is not None:
+            data.qpos[self._robot_qpos] = self._robot_rest
+            data.qpos[self._driven[0]] = data.ctrl[:] = robot
+            if model.na:
+                data.act[:] = robot
+        if self._on_floor:
+            data.qpos[2] = _FAR
         mujoco.mj_forward(model, data)
-        data.qvel[self._v] = 0.0 if speeds is None else self.row(speeds)
-        mujoco.mj_energyVel(model, data)
+        if self._on_floor:
+            gaps = [mujoco.mj_geomDistance(model, data, 0, geom, 2.0 * _FAR, None) for geom in range(1, model.ngeom)]
+            data.qpos[2] -= min(gaps, default=_FAR)
+        if speeds is not None:
+            data.qvel[self._dof] = speeds
+            mujoco.mj_energyVel(model, data)
         option.disableflags |= 0 if contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         option.gravity[:] *= gravity
-
-    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
-        """Implement `EngineFile`; links that fixed joints join are one, bodies without a name are no links.
-
-        A link's frame lies at its joint, which an MJCF may place elsewhere in the body.
-        """
-        self.begin(values, contacts=False)
-        found, last = {}, self._model.body_jntadr + self._model.body_jntnum - 1
-        for number, name in self._bodies.items():
-            body, joints = self._data.body(number), self._model.body_jntnum[number]
-            at = self._model.jnt_pos[last[number]] if joints else np.zeros(3)
-            found[name] = pose_at(body.xpos + body.xmat.reshape(3, 3) @ at, body.xmat.reshape(3, 3))
-        T_root = np.linalg.inv(found[self._root]) if self._root in found else np.eye(4)
-        return {name: (T_root @ pose)[:3] for name, pose in found.items() if name}
-
-    def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """Implement `EngineFile`."""
-        for done in range(every, count + 1, every):
-            mujoco.mj_step(self._model, self._data, nstep=every)
-            yield done
-
-    def state(self) -> tuple[FloatArray, FloatArray]:
-        """Implement `EngineFile`."""
-        return self._data.qpos[self._q].copy(), self._data.qvel[self._v].copy()
+        self._moved = False
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """Implement `EngineFile`."""
-        self._data.qpos[self._q], self._data.qvel[self._v] = q, v
+        """Implement `Engine`."""
+        self.data.qpos[self._qpos], self.data.qvel[self._dof] = q, v
+        self._moved = True
 
-    def apply(self, joint: int, force: float) -> None:
-        """Implement `EngineFile`."""
-        self._data.qfrc_applied[self._v][joint] = force
+    def step(self, count: int = 1) -> None:
+        """Implement `Engine`."""
+        mujoco.mj_step(self.model, self.data, nstep=count)
+        self._moved = False
+
+    def state(self, *, robot: bool = False) -> tuple[FloatArray, FloatArray]:
+        """Implement `Engine`."""
+        qpos, dof = (self._robot_qpos, self._robot_dof) if robot else (self._qpos, self._dof)
+        return self.data.qpos[qpos], self.data.qvel[dof]
+
+    def link_poses(self) -> dict[str, FloatArray]:
+        """Implement `Engine`; links that fixed joints join are one in a file."""
+        bodies = self._bodies
+        if self._on_floor:
+            mujoco.mj_kinematics(self.model, self.data)
+        found = np.tile(np.eye(4), (len(bodies), 1, 1))
+        found[:, :3, :3], found[:, :3, 3] = self.data.xmat[bodies].reshape(-1, 3, 3), self.data.xpos[bodies]
+        for k, place in self._offsets.items():
+            found[k, :3, 3] += found[k, :3, :3] @ place
+        return {self.links[body]: pose for body, pose in zip(bodies, found, strict=True)}
+
+    def contacts(self) -> tuple[IntArray, FloatArray]:
+        """Implement `Engine`."""
+        if self._moved:
+            mujoco.mj_forward(self.model, self.data)
+        contact = self.data.contact
+        return self.model.geom_bodyid[contact.geom], -contact.dist
+
+    def warnings(self) -> dict[str, int]:
+        """Implement `Engine`."""
+        numbers = self.data.warning.number
+        if not numbers.any():
+            return {}
+        return {_WARNINGS[k]: int(number) for k, number in enumerate(numbers) if number}
+
+    def stable(self) -> bool:
+        """Implement `Engine`."""
+        # What is wrong with a place was wrong with a speed before.
+        return math.isfinite(self.data.qvel.sum())
 
     def energy(self) -> tuple[float, float]:
-        """Implement `EngineFile`; of the state before the last step."""
-        return float(self._data.energy[0]), float(self._data.energy[1])
+        """Implement `Engine`; of the state before the last step."""
+        return float(self.data.energy[0]), float(self.data.energy[1])
 
-    def touching(self) -> Iterator[tuple[str, str, float]]:
-        """Implement `EngineFile`."""
-        mujoco.mj_forward(self._model, self._data)
-        for contact in self._data.contact:
-            bodies = sorted(int(self._model.geom_bodyid[geom]) for geom in contact.geom)
-            first, second = (self._bodies.get(body, self._world) for body in bodies)
-            yield first, second, -float(contact.dist)
+    def inertias(self, values: FloatArray) -> FloatArray:
+        """Implement `Engine`."""
+        self.place(values)
+        inverse = np.zeros((self.model.nv, self.model.nv))
+        mujoco.mj_solveM(self.model, self.data, inverse, np.eye(self.model.nv))
+        return np.asarray(1.0 / np.diagonal(inverse)[self._dof])
 
-    @property
-    def complaint(self) -> str | None:
-        """Warnings of numbers that are none."""
-        bad = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
-        broken = [item.name.removeprefix("mjWARN_") for item in bad if self._data.warning[item].number]
-        return f"MuJoCo warns {', '.join(broken)}" if broken else None
+    def max_safe_force(self, values: FloatArray) -> FloatArray:
+        """Implement `Engine`; there is no such force."""
+        return np.full(len(values), np.inf)
 
-    def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """Implement `EngineFile`."""
-        self.begin(values, contacts=True)
-        inverse = np.zeros((self._model.nv, self._model.nv))
-        mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))
-        return np.asarray(1.0 / np.diagonal(inverse)[self._v])
+    def apply(self, joint: int, force: float) -> None:
+        """Implement `Engine`."""
+        self.data.qfrc_applied[self._dof[joint]] = force
 
-    def _links_in_code(self, links: tuple[str, str]) -> object:
-        return sorted({"world" if name == self._world else name for name in links})
+    def command(self, values: FloatArray, speeds: FloatArray | None = None) -> None:
+        """Implement `Engine`."""
+        self.data.ctrl[:] = values
+        if self._servo_rate is None:
+            # As rollouts of many environments begin, so that both give the same numbers.
+            self.data.qacc_warmstart[:] = 0.0
+        elif speeds is not None:
+            self.data.ctrl[: len(speeds)] += speeds / self._servo_rate
+
+    def weld(self) -> None:
+        """Implement `Engine`."""
+        model, data, weld = self.model, self.data, self.model.equality(_WELD).id
+        tool, part = model.eq_obj1id[weld], model.eq_obj2id[weld]
+        first, second = data.xmat[tool].reshape(3, 3), data.xmat[part].reshape(3, 3)
+        # The anchor, which is the tool's origin, in the frame of the part and in that of the tool.
+        model.eq_data[weld, :3] = second.T @ (data.xpos[tool] - data.xpos[part])
+        model.eq_data[weld, 3:6] = 0.0
+        model.eq_data[weld, 6:10] = quaternion_of(first.T @ second)
+        model.eq_data[weld, 10] = 1.0
+        data.eq_active[weld] = 1
+
+    def unlock(self, joints: Iterable[str]) -> None:
+        """Implement `Engine`."""
+        for name in joints:
+            self.data.eq_active[self.model.equality(_LATCH + _OBJECT + name).id] = 0
+
+    def observe(self, rows: tuple[FloatArray, FloatArray, FloatArray] | None = None) -> ObjectState:
+        """Implement `Engine`; or the same of many worlds, rows of positions, speeds and sensors."""
+        qpos, qvel, sensors = rows or (self.data.qpos, self.data.qvel, self.data.sensordata)
+        return ObjectState(
+            values=qpos[..., self._leader_qpos],
+            speeds=qvel[..., self._leader_dof],
+            hold=sensors[..., 0:3],
+            anchor=sensors[..., 3:6],
+            axis=sensors[..., 6:9],
+        )
+
+    def touch(self) -> FloatArray:
+        """Implement `Engine`."""
+        forces = self.data.sensordata[9:].reshape(self._fingers, -1, 3).sum(axis=1)
+        return np.asarray(np.sqrt(np.vecdot(forces, forces)))
+
+    def resist(self, damping: FloatArray, friction: FloatArray, hand: PullingHand | None = None) -> None:
+        """Implement `Engine`."""
+        model, dof, stiff = self.model, self._dof, 2.0 * self.time_step
+        joints = model.dof_jntid[dof]
+        model.dof_damping[dof], model.dof_frictionloss[dof] = damping, friction
+        # As it is, MuJoCo's friction creeps: a light handle would sink by 7 deg in a second.
+        # And its ends of ranges give: a hand that presses a lid shut would push it in by 20 deg.
+        model.dof_solimp[dof, :2], model.dof_solref[dof, 0] = _STIFF, stiff
+        model.jnt_solimp[joints, :2], model.jnt_solref[joints, 0] = _STIFF, stiff
+        model.jnt_actfrclimited[:] = 0
+        self._keep()
+        if hand is None:
+            return
+        model.actuator_gainprm[:, 0] = hand.stiffness if hand.spring else hand.force
+        if hand.spring:
+            model.actuator_biastype[:] = mujoco.mjtBias.mjBIAS_AFFINE
+            model.actuator_biasprm[:, 1], model.actuator_biasprm[:, 2] = -hand.stiffness, -hand.damping
+            model.actuator_forcelimited[:] = 1
+            model.actuator_forcerange[:] = hand.force * np.array([-1.0, 1.0])
+
+    def vary(self, drawn: Variation) -> None:
+        """Implement `Engine`."""
+        model = self.model
+        model.dof_damping[self._dof] = drawn.damping * self._damping
+        model.dof_frictionloss[self._dof] = drawn.friction * self._friction
+        model.geom_friction[self._geoms] = drawn.surface * self._surface
+        T = drawn.T_root
+        model.body_pos[self._root] = T[:3, :3] @ self._place + T[:3, 3]
+        turn = np.zeros(4)
+        mujoco.mju_mat2Quat(turn, T[:3, :3].ravel())
+        mujoco.mju_mulQuat(model.body_quat[self._root], turn, self._turn)
+        masses_drawn = bool((drawn.mass != 1.0).any())
+        if masses_drawn or self._masses_drawn:
+            model.body_mass[self._body] = drawn.mass * self._mass
+            model.body_inertia[self._body] = drawn.mass[:, None] * self._moments
+            mujoco.mj_setConst(model, self.data)
+        self._masses_drawn = masses_drawn
+
+    def close(self) -> None:
+        """Implement `Engine`; nothing is held that Python does not free."""
 
 
-FILE, WORLD = MujocoFile, MujocoWorld
+ENGINE = MujocoEngine

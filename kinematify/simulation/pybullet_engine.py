@@ -14,7 +14,7 @@ import tempfile
 import weakref
 from collections import defaultdict
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import combinations, product
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -28,13 +28,12 @@ from kinematify.robot.transforms import quaternion_of
 from kinematify.robot.urdf_numbers import passing_links
 from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.engine_file import EngineFile, Push, Unloadable
+from kinematify.simulation.engine import Engine, Unloadable
 from kinematify.simulation.world import (
     ROBOT,
     Grip,
-    HeldPoint,
     ObjectState,
-    PlacedModel,
+    OpenedFile,
     PlacedRobot,
     PullingHand,
     Variation,
@@ -42,7 +41,7 @@ from kinematify.simulation.world import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -79,40 +78,60 @@ class Client:
         return function
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PybulletBody:
-    """A model in a world, and where the links and joints of the document stand in it."""
+@dataclass(kw_only=True, eq=False)
+class _Model:
+    """A model in a world, and where its links and joints stand in it."""
 
     client: Client
     body: int
-    mechanism: LeaderMechanism
-    link: IntArray
-    """PyBullet's index of each link, -1 for the root, -2 for lost ones, shape (L,)."""
-    joint: IntArray
-    """PyBullet's index of each of `LeaderMechanism.joints`, -2 for lost ones, shape (J,)."""
-    margin: FloatArray
-    """By which each link's shapes are inflated [m], shape (L,)."""
-
-    @property
-    def complete(self) -> bool:
-        """True if no link and no joint was lost."""
-        return bool((self.link >= _BASE).all() and (self.joint >= 0).all())
+    infos: list[tuple[Any, ...]]
+    """Facts of each joint, in PyBullet's order."""
+    names: tuple[str, ...]
+    """Links, the root first, then in the order of PyBullet's indices."""
+    joints: Mapping[str, int]
+    """PyBullet's index of each joint that moves, in the order of its values."""
+    saved: int | None = None
+    """State from which all runs begin."""
+    commanded: set[int] = field(default_factory=set)
+    """Joints whose motors are others now than when the file was loaded."""
 
     @cached_property
-    def indices(self) -> list[int]:
-        """`joint` as PyBullet wants it."""
-        return [int(index) for index in self.joint]
+    def links(self) -> dict[str, int]:
+        """PyBullet's index of each link, -1 for the root."""
+        return {name: index for index, name in enumerate(self.names, _BASE)}
 
     @cached_property
-    def link_of(self) -> dict[int, int]:
-        """Link of the document by PyBullet's index."""
-        return {index: link for link, index in enumerate(self.link.tolist())}
+    def places(self) -> list[int]:
+        """PyBullet's indices of the joints."""
+        return list(self.joints.values())
 
-    def place(self, values: FloatArray) -> None:
-        """Set all joints, shape (J,) [rad or m], and stop them."""
-        if self.indices:
-            self.client.resetJointStatesMultiDof(
-                self.body, self.indices, [[value] for value in values.tolist()], [[0.0]] * len(values)
+    def set(self, values: Iterable[float], speeds: Iterable[float] | None = None) -> None:
+        """Set all joints [rad or m], and their speeds, which are else none."""
+        for k, value, speed in zip(self.places, values, speeds or [0.0] * len(self.places), strict=True):
+            self.client.resetJointState(self.body, k, value, speed)
+
+    def motion(self, joints: list[int] | None = None) -> tuple[FloatArray, FloatArray]:
+        """Values and speeds of joints, of all if none are given."""
+        states = self.client.getJointStates(self.body, self.places if joints is None else joints) or ()
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
+
+    def brake(self, joint: int, force: float) -> None:
+        """Let a motor want no speed with so much force: friction."""
+        self.client.setJointMotorControl2(self.body, joint, bullet.VELOCITY_CONTROL, targetVelocity=0.0, force=force)
+
+    def hold(self, values: Mapping[str, float]) -> None:
+        """Set joints and hold them there."""
+        for name, value in values.items():
+            self.client.resetJointState(self.body, self.joints[name], value)
+            self.client.setJointMotorControl2(
+                self.body,
+                self.joints[name],
+                bullet.POSITION_CONTROL,
+                targetPosition=value,
+                targetVelocity=0.0,
+                force=_STRONG,
+                positionGain=_GAIN,
+                velocityGain=1.0,
             )
 
     def forget_contacts(self) -> None:
@@ -121,90 +140,77 @@ class PybulletBody:
         PyBullet keeps contacts from step to step as points that move with the bodies. Where a body was set to another
         place they are wrong, so all pairs are made to be found again.
         """
-        for index in self.link.tolist():
+        for index in self.links.values():
             self.client.setCollisionFilterGroupMask(self.body, index, 1, 1)
         self.client.performCollisionDetection()
 
-    def index_of(self, link: str) -> int:
-        """PyBullet's index of a link."""
-        return int(self.link[self.mechanism.links.index(link)])
-
     def frame(self, link: str) -> FloatArray:
         """World pose of a link's frame, shape (4, 4)."""
-        index = self.index_of(link)
+        index = self.links[link]
         if index == _BASE:
             inertial = self.client.getDynamicsInfo(self.body, _BASE)
-            return np.asarray(self.centre(link) @ np.linalg.inv(pose_of(inertial[3], inertial[4])))
+            return np.asarray(self.centre(link) @ np.linalg.inv(_pose_of(inertial[3], inertial[4])))
         state = self.client.getLinkState(self.body, index, computeForwardKinematics=1)
-        return pose_of(state[4], state[5])
+        return _pose_of(state[4], state[5])
 
     def centre(self, link: str) -> FloatArray:
         """World pose of a link's centre of mass, in which constraints are stated, shape (4, 4)."""
-        index = self.index_of(link)
+        index = self.links[link]
         if index == _BASE:
-            return pose_of(*self.client.getBasePositionAndOrientation(self.body))
+            return _pose_of(*self.client.getBasePositionAndOrientation(self.body))
         state = self.client.getLinkState(self.body, index, computeForwardKinematics=1)
-        return pose_of(state[0], state[1])
+        return _pose_of(state[0], state[1])
 
-    def close_loops(self) -> None:
-        """Hold both ends of every loop together (`createConstraint`), and switch off the motors of `passive` joints."""
-        for loop in self.mechanism.robot.loops:
-            parent, child = map(self.index_of, loop.links)
+    def close_loops(self, robot: Robot) -> None:
+        """Hold both ends of every loop together (`createConstraint`); no motor moves `_passive` joints."""
+        for loop in robot.loops:
+            parent, child = (self.links[link] for link in loop.links)
             at, its = (self._from_centre(link, point) for link, point in zip(loop.links, loop.points, strict=True))
             pin = self.client.createConstraint(
                 self.body, parent, self.body, child, bullet.JOINT_POINT2POINT, [0.0, 0.0, 0.0], at, its
             )
             self.client.changeConstraint(pin, maxForce=_PIN_FORCE)
-        for name in self.passive:
-            index = self.indices[self.mechanism.joints.index(name)]
-            self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
-
-    @cached_property
-    def passive(self) -> frozenset[str]:
-        """Joints that loops move, and no motor: those that follow along a curve, or mimic a joint of the same loop."""
-        robot = self.mechanism.robot
-        found = {joint.name for joint in robot.joints if joint.closure is not None}
-        for loop in robot.loops:
-            moved = joints_between(robot, loop.links)
-            mimics = ((name, robot.joint_by_name[name].mimic) for name in moved)
-            found |= {name for name, mimic in mimics if mimic is not None and mimic.joint in moved}
-        return frozenset(found)
+        for name in _passive(robot):
+            self.client.setJointMotorControl2(self.body, self.joints[name], bullet.VELOCITY_CONTROL, force=0.0)
 
     def _from_centre(self, link: str, point: FloatArray) -> list[float]:
         """A point of a link's frame in the frame of its centre of mass, in which constraints are stated [m]."""
-        info = self.client.getDynamicsInfo(self.body, self.index_of(link))
-        found: list[float] = (np.linalg.inv(pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3].tolist()
+        info = self.client.getDynamicsInfo(self.body, self.links[link])
+        found: list[float] = (np.linalg.inv(_pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3].tolist()
         return found
 
     def part(self, pairs: Iterable[tuple[int, int]]) -> None:
-        """Let the links of these pairs (indices in the document) pass through each other."""
+        """Let the links of these pairs pass through each other."""
         for first, second in pairs:
-            self.client.setCollisionFilterPair(self.body, self.body, int(self.link[first]), int(self.link[second]), 0)
+            self.client.setCollisionFilterPair(self.body, self.body, first, second, 0)
 
 
-def load(mechanism: LeaderMechanism, urdf: Path, *, step: float, itself: bool = True) -> PybulletBody:
-    """Load a file into a new world, its root fixed; links that fixed joints join do not collide with each other.
+def _loaded(client: Client, urdf: Path, root: str, joints: Iterable[str] | None = None, **options: Any) -> _Model:
+    """Load a file; links and joints that PyBullet loses are lost.
 
     Args:
-        mechanism: Its tree.
-        urdf: The file, its meshes convex.
-        step: Time step [s].
-        itself: Its links collide with each other.
+        client: The world.
+        urdf: The file.
+        root: Name of its first link.
+        joints: Joints that count, in their order; None: all that move, in PyBullet's.
+        options: Of `loadURDF`.
 
     Raises:
         Unloadable: PyBullet cannot.
     """
-    client = Client()
-    client.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step)
-    client.setGravity(0.0, 0.0, -GRAVITY)
-    flags = _FLAGS if itself else bullet.URDF_USE_INERTIA_FROM_FILE
-    loaded = _loaded(client, mechanism, urdf, useFixedBase=True, flags=flags)
-    if loaded.complete and mechanism.robot.loops:
-        loaded.client.setPhysicsEngineParameter(erp=_PIN_ERP, numSolverIterations=_PIN_ITERATIONS)
-        loaded.close_loops()
-    if loaded.complete and itself:
-        loaded.part(_welded_pairs(mechanism))
-    return loaded
+    try:
+        body = client.loadURDF(str(urdf), **options)
+    except bullet.error as error:
+        raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
+    infos = [client.getJointInfo(body, k) for k in range(client.getNumJoints(body))]
+    moving = {_text_of(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
+    return _Model(
+        client=client,
+        body=body,
+        infos=infos,
+        names=(root, *(_text_of(info[12]) for info in infos)),
+        joints=moving if joints is None else {name: moving[name] for name in joints if name in moving},
+    )
 
 
 def load_with_loops(client: int, robot: Robot, urdf: Path) -> int:
@@ -218,45 +224,36 @@ def load_with_loops(client: int, robot: Robot, urdf: Path) -> int:
     Raises:
         Unloadable: PyBullet cannot.
     """
-    loaded = _loaded(Client(client), LeaderMechanism(robot=robot), urdf, useFixedBase=True)
-    if loaded.complete:
-        loaded.close_loops()
+    loaded = _loaded(Client(client), urdf, robot.root, useFixedBase=True)
+    if _complete(loaded, LeaderMechanism(robot=robot)):
+        loaded.close_loops(robot)
     return loaded.body
 
 
-def _loaded(client: Client, mechanism: LeaderMechanism, urdf: Path, **options: Any) -> PybulletBody:
-    try:
-        body = client.loadURDF(str(urdf), **options)
-    except bullet.error as error:
-        raise Unloadable(str(error)) from error
-    infos = [client.getJointInfo(body, k) for k in range(client.getNumJoints(body))]
-    links = {text_of(info[12]): info[0] for info in infos}
-    links.setdefault(mechanism.robot.root, _BASE)
-    joints = {text_of(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
-    indices = [links.get(name, -2) for name in mechanism.links]
-    inflated = [
-        index >= _BASE and any(shape[2] == bullet.GEOM_MESH for shape in client.getCollisionShapeData(body, index))
-        for index in indices
-    ]
-    return PybulletBody(
-        client=client,
-        body=body,
-        mechanism=mechanism,
-        link=np.array(indices, dtype=np.int64),
-        joint=np.array([joints.get(name, -2) for name in mechanism.joints], dtype=np.int64),
-        margin=np.where(inflated, HULL_MARGIN, 0.0),
-    )
+def _complete(loaded: _Model, mechanism: LeaderMechanism) -> bool:
+    """True if no link and no joint was lost."""
+    return loaded.links.keys() >= {*mechanism.links} and loaded.joints.keys() >= {*mechanism.joints}
 
 
-def _welded_pairs(mechanism: LeaderMechanism) -> list[tuple[int, int]]:
+def _passive(robot: Robot) -> frozenset[str]:
+    """Joints that loops move, and no motor: those that follow along a curve, or mimic a joint of the same loop."""
+    found = {joint.name for joint in robot.joints if joint.closure is not None}
+    for loop in robot.loops:
+        moved = joints_between(robot, loop.links)
+        mimics = ((name, robot.joint_by_name[name].mimic) for name in moved)
+        found |= {name for name, mimic in mimics if mimic is not None and mimic.joint in moved}
+    return frozenset(found)
+
+
+def _welded_pairs(mechanism: LeaderMechanism) -> list[tuple[str, str]]:
     """Pairs of links that fixed joints join."""
-    members: dict[int, list[int]] = defaultdict(list)
-    for link, body in enumerate(mechanism.body_of_link.tolist()):
-        members[body].append(link)
+    members: dict[int, list[str]] = defaultdict(list)
+    for name, body in zip(mechanism.links, mechanism.body_of_link.tolist(), strict=True):
+        members[body].append(name)
     return [pair for group in members.values() for pair in combinations(group, 2)]
 
 
-def pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
+def _pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
     """Pose from a place [m] and a quaternion x, y, z, w, shape (4, 4)."""
     T = np.eye(4)
     T[:3, :3] = np.array(bullet.getMatrixFromQuaternion(turn)).reshape(3, 3)
@@ -264,7 +261,7 @@ def pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
     return T
 
 
-def text_of(name: bytes) -> str:
+def _text_of(name: bytes) -> str:
     """Return one of PyBullet's names."""
     return name.decode("utf-8", errors="replace")
 
@@ -274,319 +271,36 @@ _STRONG = 1e5  # holds a joint where it is [N m or N]
 _GAIN = 0.3  # share of an error of position that a motor makes good in a step
 
 
-class PybulletWorld:
-    """World in PyBullet; `close` frees the world."""
+class _Servos:
+    """A robot in the world of an object, and its motors."""
 
-    def __init__(self, spec: WorldSpec) -> None:
-        """Load both models.
-
-        Raises:
-            Unloadable: PyBullet cannot.
-        """
-        self._spec, self._mechanism = spec, spec.object.mechanism
-        placed, mechanism = spec.object, spec.object.mechanism
-        self._object = load(mechanism, placed.urdf, step=spec.step, itself=spec.grip is None)
-        self.client, self._body = self._object.client, self._object.body
-        self.client.setPhysicsEngineParameter(numSolverIterations=spec.iterations, deterministicOverlappingPairs=1)
-        self._object.part(_indices(placed))
-        names = list(mechanism.joints)
-        leaders = [names.index(travel.joint) for travel in mechanism.travels]
-        passive = {names.index(name) for name in self._object.passive}
-        self._leaders = [self._object.indices[k] for k in leaders]
-        self._followers = [k for k in range(len(names)) if k not in {*leaders, *passive}]
-        self._T_base = pose_of(*self.client.getBasePositionAndOrientation(self._body))
-        self._links = {index: self._link_facts(index) for index in self._object.link.tolist()}
-        self._hand: PullingHand | None = None
-        self._saved: int | None = None
-        self._move_root(np.eye(4))
-        self._robot = None if spec.robot is None else _Robot(self._object, spec.robot, spec.grip)
-        if spec.point is not None:
-            self._link = self._object.index_of(spec.point.link)
-            self._look()
-
-    def _link_facts(self, index: int) -> tuple[float, list[float], float]:
-        """Mass [kg], principal moments [kg m^2] and friction of a link."""
-        info = self.client.getDynamicsInfo(self._body, index)
-        return float(info[0]), list(info[2]), float(info[1])
-
-    def _move_root(self, T_root: FloatArray) -> None:
-        self._T_root = T_root @ self._spec.object.T_world_root
-        T = self._T_root @ self._T_base
-        turn = quaternion_of(T[:3, :3], real_last=True)
-        self.client.resetBasePositionAndOrientation(self._body, T[:3, 3].tolist(), turn)
-        if self._saved is not None:
-            self.client.removeState(self._saved)
-        self._saved = None
-
-    def resist(self, damping: FloatArray, friction: FloatArray) -> None:
-        """Give the object's joints damping and friction, with the next `vary`."""
-        self._damping, self._friction = damping, friction
-
-    def take(self, hand: PullingHand) -> None:
-        """Give the held point a hand."""
-        self._hand = hand
-
-    def vary(self, drawn: Variation) -> None:
-        """Change the object."""
-        client, body = self.client, self._body
-        for number, index in enumerate(self._object.link.tolist()):
-            mass, moments, friction = self._links[index]
-            factor = float(drawn.mass[number])
-            client.changeDynamics(
-                body, index, lateralFriction=drawn.surface * friction, linearDamping=0.0, angularDamping=0.0
-            )
-            if index != _BASE:  # a base that is given a mass is no longer fixed
-                client.changeDynamics(
-                    body, index, mass=factor * mass, localInertiaDiagonal=[factor * m for m in moments]
-                )
-        damping, friction_of = drawn.damping * self._damping, drawn.friction * self._friction
-        for k, index in enumerate(self._object.indices):
-            client.changeDynamics(body, index, jointDamping=float(damping[k]))
-            if k not in self._followers:
-                # A motor that wants no speed and is as strong as the friction is friction.
-                self._brake(index, float(friction_of[k]))
-        self._move_root(drawn.T_root)
-
-    def _brake(self, index: int, force: float) -> None:
-        self.client.setJointMotorControl2(self._body, index, bullet.VELOCITY_CONTROL, targetVelocity=0.0, force=force)
-
-    def place(self, values: FloatArray, robot: FloatArray | None = None) -> None:
-        """Set all joints and stop them."""
-        if self._saved is None:
-            self._object.place(self._mechanism.values_at_rest)
-            self._object.forget_contacts()
-            self._saved = self.client.saveState()
-        self.client.restoreState(self._saved)
-        self._object.place(values)
-        locked = self._spec.object.locked
-        if locked:
-            named = dict(zip(self._mechanism.joints, values.tolist(), strict=True))
-            _hold(self._object, {name: value for name, value in named.items() if name not in self._object.passive})
-            for index in self._object.indices:
-                self.client.changeDynamics(self._body, index, jointDamping=0.0)
-        if self._spec.point is not None:
-            self._look()
-        self.client.performCollisionDetection()
-        if robot is not None and self._robot is not None:
-            self._robot.place(robot)
-            self.client.performCollisionDetection()
-
-    def pull(self, command: FloatArray) -> None:
-        """Command the hand."""
-        self._pulled = np.asarray(command, dtype=np.float64)
-
-    def command(self, values: FloatArray, speeds: FloatArray | None = None) -> None:
-        """Command the motors; they are led there in the steps that follow."""
-        self._arm.wanted, self._arm.speeds = values, speeds
-
-    def step(self, count: int = 1) -> None:
-        """Simulate so many steps."""
-        for step in range(1, count + 1):
-            if self._robot is None:
-                self._push()
-            else:
-                self._robot.lead(step / count)
-            self._follow()
-            self.client.stepSimulation()
-        if self._robot is not None:
-            self._robot.led = self._robot.wanted
-        if self._spec.point is not None:
-            self._look()
-
-    def _push(self) -> None:
-        """Apply the hand's force in the next step."""
-        hand, state = self._hand, self._link_state()
-        assert hand is not None
-        at = self._at_hold(state)
-        if hand.spring:
-            velocity = np.array(state[6]) + np.cross(state[7], at - np.array(state[0]))
-            spring = hand.stiffness * (self._pulled - at) - hand.damping * velocity
-            force = np.clip(spring, -hand.force, hand.force)
-        else:
-            force = hand.force * self._pulled
-        self.client.applyExternalForce(self._body, self._link, force.tolist(), at.tolist(), bullet.WORLD_FRAME)
-
-    def _follow(self) -> None:
-        """Make joints that mimic others follow them, which PyBullet does not care for."""
-        if not self._followers:
-            return
-        values = self._mechanism.all_values(self._object_leaders()[0][None])[0]
-        for k in self._followers:
-            self.client.setJointMotorControl2(
-                self._body,
-                self._object.indices[k],
-                bullet.POSITION_CONTROL,
-                targetPosition=float(values[k]),
-                force=_FOLLOWER_FORCE,
-            )
-
-    def release(self, joints: Iterable[str]) -> None:
-        """Make locked joints of the object go."""
-        for name in joints:
-            self._brake(self._object.indices[self._mechanism.joints.index(name)], 0.0)
-
-    def weld(self) -> None:
-        """Fix the tool to the part where it now is."""
-        robot, grip, tool = self._arm.loaded, self._spec.grip, self._arm.placed.tool
-        assert grip is not None
-        T_world_tool = robot.frame(tool)
-        T_tool, T_part = (
-            np.linalg.inv(side.centre(link)) @ T_world_tool for side, link in ((robot, tool), (self._object, grip.link))
-        )
-        weld = self.client.createConstraint(
-            robot.body,
-            robot.index_of(tool),
-            self._body,
-            self._object.index_of(grip.link),
-            bullet.JOINT_FIXED,
-            [0.0, 0.0, 0.0],
-            T_tool[:3, 3].tolist(),
-            T_part[:3, 3].tolist(),
-            *(quaternion_of(T[:3, :3], real_last=True) for T in (T_tool, T_part)),
-        )
-        self.client.changeConstraint(weld, maxForce=grip.weld_force)
-
-    def _object_leaders(self) -> tuple[FloatArray, FloatArray]:
-        return _motion(self._object, self._leaders)
-
-    def _link_state(self) -> tuple[tuple[float, ...], ...]:
-        state: tuple[tuple[float, ...], ...] = self.client.getLinkState(
-            self._body, self._link, computeLinkVelocity=1, computeForwardKinematics=1
-        )
-        return state
-
-    def _at_hold(self, state: tuple[tuple[float, ...], ...]) -> FloatArray:
-        return np.asarray(pose_of(state[4], state[5])[:3] @ np.append(self._point.point, 1.0))
-
-    @property
-    def _point(self) -> HeldPoint:
-        assert self._spec.point is not None
-        return self._spec.point
-
-    def _look(self) -> None:
-        """Take the state of now for `state`."""
-        (values, speeds), link = self._object_leaders(), self._link_state()
-        T = pose_of(link[4], link[5])
-        self._state = ObjectState(
-            values=values,
-            speeds=speeds,
-            hold=self._at_hold(link),
-            anchor=T[:3, 3],
-            axis=T[:3, :3] @ self._point.axis,
-        )
-
-    def state(self) -> ObjectState:
-        """State of the object after the last step."""
-        return self._state
-
-    def values(self) -> FloatArray:
-        """Values of all joints of the object."""
-        return _motion(self._object, self._object.indices)[0]
-
-    def robot_values(self) -> FloatArray:
-        """Values of all joints of the robot."""
-        return _motion(self._arm.loaded, self._arm.loaded.indices)[0]
-
-    def driven(self) -> tuple[FloatArray, FloatArray]:
-        """Values and speeds of the robot's joints with motors."""
-        return _motion(self._arm.loaded, self._arm.driven)
-
-    def tool(self) -> FloatArray:
-        """Pose of the tool."""
-        return self._arm.loaded.frame(self._arm.placed.tool)
-
-    def touch(self) -> FloatArray:
-        """Force of each finger on the held body."""
-        links = self._arm.placed.finger_links
-        forces = np.zeros((len(links), 3))
-        rows = {self._arm.loaded.index_of(link): row for row, link in enumerate(links)}
-        held = {self._object.index_of(link) for link in self._point.body}
-        for point in self._contacts():
-            if point[3] in rows and point[4] in held:
-                forces[rows[point[3]]] += point[9] * np.array(point[7])
-        return np.asarray(np.linalg.norm(forces, axis=1))
-
-    def _contacts(self) -> list[tuple[Any, ...]]:
-        """Contacts of the robot with the object."""
-        return list(self.client.getContactPoints(self._arm.loaded.body, self._body) or ())
-
-    @property
-    def _arm(self) -> _Robot:
-        assert self._robot is not None
-        return self._robot
-
-    def link_poses(self) -> dict[str, FloatArray]:
-        """World poses of the links of both."""
-        leaders = [travel.joint for travel in self._mechanism.travels]
-        poses = forward_kinematics(self._mechanism.robot, dict(zip(leaders, self._state.values.tolist(), strict=True)))
-        found = {name: self._T_root @ T for name, T in poses.items()}
-        for name in () if self._robot is None else self._robot.placed.mechanism.links:
-            found[ROBOT + name] = self._arm.loaded.frame(name)
-        return found
-
-    def depth(self) -> float:
-        """Deepest contact of the object with itself among pairs that collide, or with the robot."""
-        link_of, margin = self._object.link_of, self._object.margin
-        points = self.client.getContactPoints(self._body, self._body)
-        depths = [-p[8] - float(margin[link_of[p[3]]] + margin[link_of[p[4]]]) for p in points]
-        if self._robot is not None:
-            depths += [float(-point[8]) - HULL_MARGIN for point in self._contacts()]
-        return max(0.0, *depths) if depths else 0.0
-
-    def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
-        """Deepest contact of the robot, if it is deeper than that."""
-        deepest = min(self._contacts(), key=lambda point: point[8], default=None)
-        if deepest is None or -deepest[8] - HULL_MARGIN <= than:
-            return None
-        sides = ((self._arm.loaded, deepest[3]), (self._object, deepest[4]))
-        link, other = (side.mechanism.links[side.link_of[index]] for side, index in sides)
-        return -deepest[8] - HULL_MARGIN, (link, other)
-
-    def stable(self) -> bool:
-        """True if all numbers are finite."""
-        robot = () if self._robot is None else self.driven()
-        return all(bool(np.isfinite(part).all()) for part in (*self._object_leaders(), *robot))
-
-    def warnings(self) -> dict[str, int]:
-        """PyBullet has none."""
-        return {}
-
-    def close(self) -> None:
-        """Free the world."""
-        self.client.disconnect()
-
-
-class _Robot:
-    """A robot in the world of an object."""
-
-    def __init__(self, beside: PybulletBody, placed: PlacedRobot, grip: Grip | None) -> None:
-        """The robot meets the object and the floor; the object stands on the floor."""
+    def __init__(self, beside: _Model, placed: PlacedRobot, grip: Grip | None) -> None:
+        """The robot meets the object and the floor; the object does not meet the floor."""
         client, self.placed, T = beside.client, placed, placed.T_world_root
         flags = bullet.URDF_USE_INERTIA_FROM_FILE | (bullet.URDF_USE_SELF_COLLISION if grip is None else 0)
         at = {"basePosition": T[:3, 3].tolist(), "baseOrientation": quaternion_of(T[:3, :3], real_last=True).tolist()}
-        loaded = _loaded(client, placed.mechanism, placed.urdf, useFixedBase=True, flags=flags, **at)
-        self.loaded, joints = loaded, dict(zip(placed.mechanism.joints, loaded.indices, strict=True))
-        self.driven = [joints[name] for name in placed.driven]
+        root, joints = placed.mechanism.robot.root, placed.mechanism.joints
+        self.model = model = _loaded(client, placed.urdf, root, joints, useFixedBase=True, flags=flags, **at)
+        self.driven = [model.joints[name] for name in placed.driven]
         self.wanted = self.led = np.zeros(len(self.driven))
         """What is commanded, and what the motors have been led to."""
         self.speeds: FloatArray | None = None
         grips = np.full(len(placed.fingers), placed.settings.grip_force)
         self._forces = np.concatenate([placed.strongest, grips]).tolist()
-        for index in loaded.link.tolist():
-            client.changeDynamics(loaded.body, index, lateralFriction=placed.settings.friction)
-        rest = zip(placed.mechanism.joints, placed.mechanism.values_at_rest.tolist(), strict=True)
-        _hold(loaded, {name: value for name, value in rest if name not in placed.driven})
+        for name in placed.mechanism.links:
+            client.changeDynamics(model.body, model.links[name], lateralFriction=placed.settings.friction)
+        rest = zip(joints, placed.mechanism.values_at_rest.tolist(), strict=True)
+        model.hold({name: value for name, value in rest if name not in placed.driven})
         for hand, part in () if grip is None else product(grip.hand, grip.part):
-            first, second = loaded.index_of(hand), beside.index_of(part)
-            client.setCollisionFilterPair(loaded.body, beside.body, first, second, 0)
+            client.setCollisionFilterPair(model.body, beside.body, model.links[hand], beside.links[part], 0)
         floor = client.createMultiBody(0.0, client.createCollisionShape(bullet.GEOM_PLANE))
-        for index in beside.link.tolist():
+        for index in beside.links.values():
             client.setCollisionFilterPair(floor, beside.body, _BASE, index, 0)
 
     def place(self, values: FloatArray) -> None:
         """Set the joints with motors, and hold them."""
         for index, value in zip(self.driven, values.tolist(), strict=True):
-            self.loaded.client.resetJointState(self.loaded.body, index, value)
+            self.model.client.resetJointState(self.model.body, index, value)
         self.wanted = self.led = np.asarray(values)
         self.lead(1.0)
 
@@ -596,8 +310,8 @@ class _Robot:
         speeds: dict[str, list[float]] = {}
         if self.speeds is not None:
             speeds["targetVelocities"] = [*self.speeds.tolist(), *[0.0] * (count - len(self.speeds))]
-        self.loaded.client.setJointMotorControlArray(
-            self.loaded.body,
+        self.model.client.setJointMotorControlArray(
+            self.model.body,
             self.driven,
             bullet.POSITION_CONTROL,
             targetPositions=(self.led + share * (self.wanted - self.led)).tolist(),
@@ -605,35 +319,6 @@ class _Robot:
             positionGains=[_GAIN] * count,
             velocityGains=[1.0] * count,
             **speeds,
-        )
-
-
-def _indices(placed: PlacedModel) -> list[tuple[int, int]]:
-    """Pairs of links that do not act on each other."""
-    place = {name: k for k, name in enumerate(placed.mechanism.links)}
-    return [(place[first], place[second]) for first, second in placed.apart]
-
-
-def _motion(body: PybulletBody, joints: list[int]) -> tuple[FloatArray, FloatArray]:
-    """Values and speeds of joints."""
-    states = body.client.getJointStates(body.body, joints) or ()
-    return np.array([state[0] for state in states]), np.array([state[1] for state in states])
-
-
-def _hold(side: PybulletBody, values: Mapping[str, float]) -> None:
-    """Set joints and hold them there."""
-    joints = dict(zip(side.mechanism.joints, side.indices, strict=True))
-    for name, value in values.items():
-        side.client.resetJointState(side.body, joints[name], value)
-        side.client.setJointMotorControl2(
-            side.body,
-            joints[name],
-            bullet.POSITION_CONTROL,
-            targetPosition=value,
-            targetVelocity=0.0,
-            force=_STRONG,
-            positionGain=_GAIN,
-            velocityGain=1.0,
         )
 
 
@@ -705,196 +390,7 @@ _TIME_STEP = 1.0 / 240.0
 _FASTEST = 100.0
 """Speed that Bullet lets no joint exceed [rad/s or m/s]."""
 _MOTOR = 240.0
-"""Of a joint that was pushed, afterwards [N or N m]: about what motors have when a file is loaded."""
-
-
-class PybulletFile(EngineFile):
-    """See `EngineFile`: a file as `loadURDF` loads it, its base fixed, its motors as they are.
-
-    Contacts of links are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold together, for
-    those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to collide with
-    their own model.
-    """
-
-    code: ClassVar = {
-        "joints": _JOINTS,
-        "overlap": _OVERLAP,
-        "rest": _REST,
-        "push": _PUSH,
-        "push_alone": _without_contacts(_PUSH),
-        "release": _RELEASE.replace("{looks}", "8"),
-    }
-
-    look_steps = 8
-
-    def __init__(self, urdf: Path, root: str) -> None:
-        """Load it.
-
-        Raises:
-            Unloadable: PyBullet does not open it.
-        """
-        self._path, self._root, self.time_step = urdf, root, _TIME_STEP
-        self._passing = passing_links(parse_description(urdf))
-        world = self._opened(contacts=True, seen=True)
-        self._now, self._worlds = world, {True: world}
-        self._file = {"path": str(urdf), "silent": world.ignored_pairs}
-        infos, self._links = world.infos, world.links
-        self._index = {text_of(info[1]): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
-        self._places = list(self._index.values())
-        self.joints = tuple(self._index)
-        self.limits = {
-            name: infos[k][8:10] if infos[k][8] <= infos[k][9] else (-np.inf, np.inf) for name, k in self._index.items()
-        }
-        above = {k: info[16] for k, info in enumerate(infos)}
-        self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
-
-    def begin(
-        self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
-        *,
-        contacts: bool,
-        gravity: bool = True,
-        released: Sequence[int] | None = None,
-    ) -> None:
-        """See `EngineFile`: the world as it was after loading; motors of joints that were released are put back."""
-        world = self._worlds.get(contacts)
-        if world is None or (released is None and world.pushed):
-            world = self._opened(contacts=contacts, seen=False)
-        self._now = self._worlds[contacts] = world
-        world.client.restoreState(world.state)
-        for name, k in self._index.items():
-            world.client.resetJointState(world.body, k, values[name], 0.0 if speeds is None else speeds[name])
-        world.client.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0)
-        freed = [self._places[number] for number in released or ()]
-        for k in world.freed - set(freed):
-            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
-        for k in freed:
-            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=0)
-        world.freed, world.pushed = set(freed), world.pushed or bool(freed)
-
-    def _opened(self, *, contacts: bool, seen: bool) -> _LoadedWorld:
-        return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
-
-    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
-        """See `EngineFile`; of all links but the base."""
-        self.begin(values, contacts=True)
-        world, links = self._now, [link for link in self._links if link != -1]
-        states = world.client.getLinkStates(world.body, links, computeForwardKinematics=True) if links else ()
-        return {
-            self._links[link]: np.column_stack([np.reshape(bullet.getMatrixFromQuaternion(state[5]), (3, 3)), state[4]])
-            for link, state in zip(links, states, strict=True)
-        }
-
-    def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """See `EngineFile`."""
-        for done in range(1, count + 1):
-            self._now.client.stepSimulation()
-            if done % every == 0:
-                yield done
-
-    def state(self) -> tuple[FloatArray, FloatArray]:
-        """See `EngineFile`."""
-        states = self._now.client.getJointStates(self._now.body, self._places)
-        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
-
-    def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """See `EngineFile`."""
-        self._now.client.resetJointStatesMultiDof(
-            self._now.body, self._places, q[:, None].tolist(), v[:, None].tolist()
-        )
-
-    def apply(self, joint: int, force: float) -> None:
-        """See `EngineFile`."""
-        self._now.client.setJointMotorControl2(self._now.body, self._places[joint], bullet.TORQUE_CONTROL, force=force)
-
-    def touching(self) -> Iterator[tuple[str, str, float]]:
-        """See `EngineFile`."""
-        world = self._now
-        world.client.performCollisionDetection()
-        for contact in world.client.getContactPoints(world.body, world.body):
-            first, second = sorted(contact[3:5])
-            yield self._links[first], self._links[second], -contact[8]
-
-    def energy(self) -> tuple[float, float]:
-        """See `EngineFile`; of all links but the base."""
-        world, links = self._now, [link for link in self._links if link != -1]
-        states = world.client.getLinkStates(world.body, links, computeLinkVelocity=True, computeForwardKinematics=True)
-        potential = kinetic = 0.0
-        for link, state in zip(links, states, strict=True):
-            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
-            turning = np.reshape(bullet.getMatrixFromQuaternion(state[1]), (3, 3)).T @ state[7]
-            potential += GRAVITY * mass * state[0][2]
-            kinetic += 0.5 * (mass * np.dot(state[6], state[6]) + np.dot(tensor, turning**2))
-        return potential, float(kinetic)
-
-    def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `EngineFile`; the motors of the others hold them within a step."""
-        self.begin(values, contacts=True, released=())
-        return np.array([self._inertia(self._now, k) for k in self._places])
-
-    def _inertia(self, world: _LoadedWorld, joint: int) -> float:
-        """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
-        info = world.client.getJointInfo(world.body, joint)
-        frame = world.client.getLinkState(world.body, joint, computeForwardKinematics=True)
-        axis = np.array(bullet.rotateVector(frame[5], info[13]))
-        total = 0.0
-        for link in self._below[joint]:
-            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
-            centre, turned, *_ = world.client.getLinkState(world.body, link, computeForwardKinematics=True)
-            if info[2] == bullet.JOINT_PRISMATIC:
-                total += mass
-                continue
-            arm = np.cross(axis, np.subtract(centre, frame[4]))
-            local = np.array(bullet.getMatrixFromQuaternion(turned)).reshape(3, 3).T @ axis
-            total += mass * float(arm @ arm) + float(local @ (np.array(tensor) * local))
-        return total
-
-    def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
-        """See `EngineFile`.
-
-        Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
-        is light where those give way is thrown back by more.
-        """
-        torques, speeds = 1e-2 * self.inertias(values), []
-        self.begin(values, contacts=False, gravity=False, released=range(len(self._places)))
-        for joint, torque in enumerate(torques.tolist()):
-            for k, value in zip(self._places, self.row(values).tolist(), strict=True):
-                self._now.client.resetJointState(self._now.body, k, value)
-            self.apply(joint, torque)
-            self._now.client.stepSimulation()
-            speeds.append(abs(float(self.state()[1][joint])))
-        del self._worlds[False]
-        return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
-
-    def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
-        """See `EngineFile`; the motors of the other joints hold them, gravity is off."""
-        self.begin(values, contacts=False, gravity=False, released=())
-        for name, k in self._index.items():
-            wanted = target if name == joint else values[name]
-            self._now.client.setJointMotorControl2(self._now.body, k, bullet.POSITION_CONTROL, targetPosition=wanted)
-        sign, farthest, index = np.sign(target - values[joint]), values[joint], self._index[joint]
-        for _ in self.steps(self._steps(seconds)):
-            farthest = sign * max(sign * farthest, sign * self._now.client.getJointState(self._now.body, index)[0])
-        del self._worlds[False]  # its motors are others than those of the file as it is loaded
-        return float(sign * min(sign * farthest, sign * target))
-
-    def _script_values(self, values: Mapping[str, float]) -> object:
-        return {k: float(values[name]) for name, k in self._index.items()}
-
-    def _links_in_code(self, links: tuple[str, str]) -> object:
-        return {k for k, name in self._links.items() if name in links}
-
-    def _index_of(self, joint: str) -> int:
-        return self._index[joint]
-
-    def _moved_in_code(self, push: Push) -> object:
-        return list(zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True))
-
-
-def _chain(above: Mapping[int, int], link: int) -> list[int]:
-    """A link and all that it hangs on but the base."""
-    return [] if link == -1 else [link, *_chain(above, above[link])]
+"""Of every joint when a file is loaded [N or N m]: Bullet gives it an impulse of 1 a step, and no speed."""
 
 
 def _printed(load: Callable[[], object]) -> str:
@@ -918,50 +414,444 @@ def _printed(load: Callable[[], object]) -> str:
     return "; ".join(item for item in dict.fromkeys(words) if item and not item.startswith(_NO_FAULT))
 
 
-class _LoadedWorld:
-    """A world with one file in it."""
+class PybulletEngine(Engine):
+    """PyBullet; `close` frees its worlds.
 
-    def __init__(self, urdf: Path, *, contacts: bool, seen: bool, root: str, passing: frozenset[str]) -> None:
-        """Load a file.
+    Contacts of links of a file are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold
+    together, for those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to
+    collide with their own model.
+    """
 
-        Args:
-            urdf: The file.
-            contacts: Links collide with each other.
-            seen: With its visual geometry, which takes nearly all of the time and moves nothing.
-            root: Name of the first link.
-            passing: Links that collide with no other one.
+    title = "PyBullet"
+    code: ClassVar = {
+        "joints": _JOINTS,
+        "overlap": _OVERLAP,
+        "rest": _REST,
+        "push": _PUSH,
+        "push_alone": _without_contacts(_PUSH),
+        "release": _RELEASE.replace("{looks}", "8"),
+    }
+    keyed = True
+    look_steps = 8
+    _servos: _Servos | None = None
+    _hand: PullingHand | None = None
+
+    def __init__(self, content: OpenedFile | WorldSpec) -> None:
+        """Load a file, its base fixed, its motors as they are; or both models of a world.
+
+        Raises:
+            Unloadable: PyBullet does not open it.
         """
-        self.client, self.pushed = Client(), False
-        self.freed: set[int] = set()
-        """Joints without motors now; `pushed`: some were so once."""
-        self.client.setGravity(0.0, 0.0, -GRAVITY)
+        self._spec = content if isinstance(content, WorldSpec) else None
+        self._file = content if isinstance(content, OpenedFile) else None
+        self._followers: list[int] = []
+        self._moved, self._margin = False, dict[int, float]()
+        self.facts = {}
+        if isinstance(content, WorldSpec):
+            self.root, self.time_step = content.object.mechanism.robot.root, content.step
+            self._now = self._load_world(content)
+        else:
+            self.root, self.time_step = content.root, _TIME_STEP
+            self._passing = passing_links(parse_description(content.urdf))
+            self._now = self._load_file(content, contacts=True, seen=True)
+        now, self._worlds = self._now, {True: self._now}
+        self.joints, self.joint_code = tuple(now.joints), now.joints
+        self.links, self.link_code = now.names, now.links
+        if self._servos is not None:
+            self.links += tuple(ROBOT + name for name in self._servos.model.names)
+        ends = {name: now.infos[k][8:10] for name, k in now.joints.items()}
+        self.limits = {name: pair if pair[0] <= pair[1] else (-np.inf, np.inf) for name, pair in ends.items()}
+
+    def _load_file(self, file: OpenedFile, *, contacts: bool, seen: bool) -> _Model:
+        """Load the file with or without contacts among its links.
+
+        `seen`: with its visual geometry, which takes nearly all of the time and moves nothing.
+        """
+        client = Client()
+        client.setGravity(0.0, 0.0, -GRAVITY)
         flags = (bullet.URDF_USE_SELF_COLLISION if contacts else 0) | (0 if seen else bullet.URDF_IGNORE_VISUAL_SHAPES)
         try:
-            self.body = self.client.loadURDF(str(urdf), useFixedBase=True, flags=flags)
-        except bullet.error as error:
-            printed = _printed(lambda: self.client.loadURDF(str(urdf), flags=flags))
-            words = f"{error} It prints: {printed}" if printed else str(error)
-            raise Unloadable(words, _OPEN.format(path=str(urdf))) from error
-        self.infos = [self.client.getJointInfo(self.body, k) for k in range(self.client.getNumJoints(self.body))]
-        self.links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(self.infos)}}
-        self.ignored_pairs = self._silent_pairs(passing) if contacts else []
-        """Indices of two links each that do not collide."""
-        for first, second in self.ignored_pairs:
-            self.client.setCollisionFilterPair(self.body, self.body, first, second, 0)
-        self.state = self.client.saveState()
+            loaded = _loaded(client, file.urdf, file.root, useFixedBase=True, flags=flags)
+        except Unloadable as error:
+            printed = _printed(lambda: client.loadURDF(str(file.urdf), flags=flags))
+            if not printed:
+                raise
+            raise Unloadable(f"{error.__cause__} It prints: {printed}", error.reproduction) from error
+        if contacts:
+            self.facts = {"path": str(file.urdf), "silent": self._silent_pairs(loaded)}
+            loaded.part(self._silent_pairs(loaded))
+        loaded.saved = client.saveState()
+        return loaded
 
-    def _silent_pairs(self, passing: frozenset[str]) -> list[tuple[int, int]]:
+    def _load_world(self, spec: WorldSpec) -> _Model:
+        placed, mechanism, itself = spec.object, spec.object.mechanism, spec.grip is None
+        client = Client()
+        client.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=spec.step)
+        client.setGravity(0.0, 0.0, -GRAVITY)
+        flags = _FLAGS if itself else bullet.URDF_USE_INERTIA_FROM_FILE
+        root, joints = mechanism.robot.root, mechanism.joints
+        self._object = loaded = _loaded(client, placed.urdf, root, joints, useFixedBase=True, flags=flags)
+        for index in loaded.links.values():
+            meshes = any(shape[2] == bullet.GEOM_MESH for shape in client.getCollisionShapeData(loaded.body, index))
+            self._margin[index] = HULL_MARGIN if meshes else 0.0
+        if not _complete(loaded, mechanism):
+            raise Unloadable("it loses links or joints")
+        if mechanism.robot.loops:
+            client.setPhysicsEngineParameter(erp=_PIN_ERP, numSolverIterations=_PIN_ITERATIONS)
+            loaded.close_loops(mechanism.robot)
+        welded = _welded_pairs(mechanism) if itself else []
+        client.setPhysicsEngineParameter(numSolverIterations=spec.iterations, deterministicOverlappingPairs=1)
+        loaded.part((loaded.links[first], loaded.links[second]) for first, second in (*welded, *placed.apart))
+        self._mechanism, names, self._passive = mechanism, list(joints), _passive(mechanism.robot)
+        leaders = [names.index(travel.joint) for travel in mechanism.travels]
+        self._leaders = [loaded.places[k] for k in leaders]
+        self._followers = [k for k, name in enumerate(names) if k not in leaders and name not in self._passive]
+        self._T_base = _pose_of(*client.getBasePositionAndOrientation(loaded.body))
+        self._link_facts = [self._facts_of(index) for index in self._document_links]
+        self._move_root(np.eye(4))
+        self._servos = None if spec.robot is None else _Servos(loaded, spec.robot, spec.grip)
+        if spec.point is not None:
+            self._point, self._link = spec.point, loaded.links[spec.point.link]
+        return loaded
+
+    @property
+    def _document_links(self) -> list[int]:
+        """PyBullet's indices of the object's links, in the order of the document."""
+        return [self._object.links[name] for name in self._mechanism.links]
+
+    def _facts_of(self, index: int) -> tuple[float, list[float], float]:
+        """Mass [kg], principal moments [kg m^2] and friction of a link."""
+        info = self._object.client.getDynamicsInfo(self._object.body, index)
+        return float(info[0]), list(info[2]), float(info[1])
+
+    def _move_root(self, T_root: FloatArray) -> None:
+        assert self._spec is not None
+        loaded, self._T_root = self._object, T_root @ self._spec.object.T_world_root
+        T = self._T_root @ self._T_base
+        turn = quaternion_of(T[:3, :3], real_last=True)
+        loaded.client.resetBasePositionAndOrientation(loaded.body, T[:3, 3].tolist(), turn)
+        if loaded.saved is not None:
+            loaded.client.removeState(loaded.saved)
+        loaded.saved = None
+
+    def _silent_pairs(self, loaded: _Model) -> list[tuple[int, int]]:
         """Pairs that a fixed joint connects, that only one moving joint parts, or that pass by declaration."""
-        infos, names, top = self.infos, self.links, {-1: -1}
+        infos, names, top = loaded.infos, dict(enumerate(loaded.names, _BASE)), {-1: -1}
         for k, info in enumerate(infos):  # parents come first
             top[k] = top[info[16]] if info[2] == bullet.JOINT_FIXED else k
         above = {k: top[infos[k][16]] if k >= 0 else None for k in set(top.values())}
-        solid = [k for k in top if self.client.getCollisionShapeData(self.body, k)]
+        solid = [k for k in top if loaded.client.getCollisionShapeData(loaded.body, k)]
         return [
             (a, b)
             for a, b in combinations(solid, 2)
-            if top[a] == top[b] or top[a] == above[top[b]] or top[b] == above[top[a]] or {names[a], names[b]} & passing
+            if top[a] == top[b]
+            or top[a] == above[top[b]]
+            or top[b] == above[top[a]]
+            or {names[a], names[b]} & self._passing
         ]
 
+    def place(
+        self,
+        values: FloatArray,
+        robot: FloatArray | None = None,
+        *,
+        speeds: FloatArray | None = None,
+        contacts: bool = True,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """Implement `Engine`; motors of a file that were released are put back."""
+        if self._file is None:
+            self._place_in_world(values, robot)
+            return
+        now = self._worlds.get(contacts)
+        if now is None:
+            now = self._load_file(self._file, contacts=contacts, seen=False)
+        self._now, self._moved = now, True
+        self._worlds[contacts] = now
+        now.client.restoreState(now.saved)
+        now.set(values.tolist(), None if speeds is None else speeds.tolist())
+        now.client.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0)
+        for k in now.commanded:
+            now.brake(k, _MOTOR)
+        now.commanded = {now.places[number] for number in released or ()}
+        for k in now.commanded:
+            now.brake(k, 0.0)
 
-FILE, WORLD = PybulletFile, PybulletWorld
+    def _place_in_world(self, values: FloatArray, robot: FloatArray | None) -> None:
+        assert self._spec is not None
+        loaded, client = self._object, self._object.client
+        if loaded.saved is None:
+            loaded.set(self._mechanism.values_at_rest.tolist())
+            loaded.forget_contacts()
+            loaded.saved = client.saveState()
+        client.restoreState(loaded.saved)
+        loaded.set(values.tolist())
+        if self._spec.object.locked:
+            named = zip(self.joints, values.tolist(), strict=True)
+            loaded.hold({name: value for name, value in named if name not in self._passive})
+            for index in loaded.places:
+                client.changeDynamics(loaded.body, index, jointDamping=0.0)
+        client.performCollisionDetection()
+        if robot is not None and self._servos is not None:
+            self._servos.place(robot)
+            client.performCollisionDetection()
+
+    def set_state(self, q: FloatArray, v: FloatArray) -> None:
+        """Implement `Engine`."""
+        now, self._moved = self._now, True
+        now.client.resetJointStatesMultiDof(now.body, now.places, q[:, None].tolist(), v[:, None].tolist())
+
+    def step(self, count: int = 1) -> None:
+        """Implement `Engine`."""
+        for step in range(1, count + 1):
+            if self._hand is not None:
+                self._pull(self._hand)
+            if self._servos is not None:
+                self._servos.lead(step / count)
+            if self._followers:
+                self._follow()
+            self._now.client.stepSimulation()
+        self._moved = False
+        if self._servos is not None:
+            self._servos.led = self._servos.wanted
+
+    def _pull(self, hand: PullingHand) -> None:
+        """Apply the hand's force in the next step."""
+        client, state = self._now.client, self._link_state()
+        at = self._at_hold(state)
+        if hand.spring:
+            velocity = np.array(state[6]) + np.cross(state[7], at - np.array(state[0]))
+            spring = hand.stiffness * (self._pulled - at) - hand.damping * velocity
+            force = np.clip(spring, -hand.force, hand.force)
+        else:
+            force = hand.force * self._pulled
+        client.applyExternalForce(self._now.body, self._link, force.tolist(), at.tolist(), bullet.WORLD_FRAME)
+
+    def _follow(self) -> None:
+        """Make joints that mimic others follow them, which PyBullet does not care for."""
+        values, now = self._mechanism.all_values(self._now.motion(self._leaders)[0][None])[0], self._now
+        for k in self._followers:
+            now.client.setJointMotorControl2(
+                now.body,
+                now.places[k],
+                bullet.POSITION_CONTROL,
+                targetPosition=float(values[k]),
+                force=_FOLLOWER_FORCE,
+            )
+
+    def _link_state(self) -> tuple[tuple[float, ...], ...]:
+        state: tuple[tuple[float, ...], ...] = self._now.client.getLinkState(
+            self._now.body, self._link, computeLinkVelocity=1, computeForwardKinematics=1
+        )
+        return state
+
+    def _at_hold(self, state: tuple[tuple[float, ...], ...]) -> FloatArray:
+        return np.asarray(_pose_of(state[4], state[5])[:3] @ np.append(self._point.point, 1.0))
+
+    def state(self, *, robot: bool = False) -> tuple[FloatArray, FloatArray]:
+        """Implement `Engine`."""
+        return self._servos.model.motion() if robot and self._servos is not None else self._now.motion()
+
+    def link_poses(self) -> dict[str, FloatArray]:
+        """Implement `Engine`; of all links of a file but the base."""
+        now = self._now
+        if self._file is not None:
+            links = list(range(len(now.infos)))
+            states = now.client.getLinkStates(now.body, links, computeForwardKinematics=True) if links else ()
+            return {name: _pose_of(*state[4:6]) for name, state in zip(now.names[1:], states, strict=True)}
+        leaders = [travel.joint for travel in self._mechanism.travels]
+        values = now.motion(self._leaders)[0].tolist()
+        poses = forward_kinematics(self._mechanism.robot, dict(zip(leaders, values, strict=True)))
+        found = {name: self._T_root @ T for name, T in poses.items()}
+        if self._servos is not None:
+            found |= {ROBOT + name: self._servos.model.frame(name) for name in self._servos.placed.mechanism.links}
+        return found
+
+    def contacts(self) -> tuple[IntArray, FloatArray]:
+        """Implement `Engine`; of the robot only those with the object."""
+        now = self._now
+        if self._moved:
+            now.client.performCollisionDetection()
+        inflated = self._margin.get
+        found = [
+            (point[3] + 1, point[4] + 1, -point[8] - float(inflated(point[3], 0.0) + inflated(point[4], 0.0)))
+            for point in now.client.getContactPoints(now.body, now.body) or ()
+        ]
+        first = len(now.names) + 1
+        found += [(first + point[3], point[4] + 1, -point[8] - HULL_MARGIN) for point in self._robot_contacts()]
+        return np.array([row[:2] for row in found], dtype=np.int64).reshape(-1, 2), np.array([row[2] for row in found])
+
+    def _robot_contacts(self) -> list[tuple[Any, ...]]:
+        """Contacts of the robot with the object."""
+        if self._servos is None:
+            return []
+        return list(self._now.client.getContactPoints(self._servos.model.body, self._now.body) or ())
+
+    def warnings(self) -> dict[str, int]:
+        """Implement `Engine`; PyBullet has none."""
+        return {}
+
+    def stable(self) -> bool:
+        """Implement `Engine`."""
+        seen = (*self.state(), *self.state(robot=True))
+        return all(bool(np.isfinite(part).all()) for part in seen)
+
+    def energy(self) -> tuple[float, float]:
+        """Implement `Engine`; of all links but the base."""
+        world, links = self._now, list(range(len(self._now.infos)))
+        states = world.client.getLinkStates(world.body, links, computeLinkVelocity=True, computeForwardKinematics=True)
+        potential = kinetic = 0.0
+        for link, state in zip(links, states, strict=True):
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
+            turning = np.reshape(bullet.getMatrixFromQuaternion(state[1]), (3, 3)).T @ state[7]
+            potential += GRAVITY * mass * state[0][2]
+            kinetic += 0.5 * (mass * np.dot(state[6], state[6]) + np.dot(tensor, turning**2))
+        return potential, float(kinetic)
+
+    def inertias(self, values: FloatArray) -> FloatArray:
+        """Implement `Engine`; the motors of the others hold them within a step."""
+        self.place(values, released=())
+        return np.array([self._inertia(self._now, k) for k in self._now.places])
+
+    def _inertia(self, world: _Model, joint: int) -> float:
+        """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
+        info = world.client.getJointInfo(world.body, joint)
+        frame = world.client.getLinkState(world.body, joint, computeForwardKinematics=True)
+        axis = np.array(bullet.rotateVector(frame[5], info[13]))
+        total = 0.0
+        for link in self._below(joint):
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
+            centre, turned, *_ = world.client.getLinkState(world.body, link, computeForwardKinematics=True)
+            if info[2] == bullet.JOINT_PRISMATIC:
+                total += mass
+                continue
+            arm = np.cross(axis, np.subtract(centre, frame[4]))
+            local = np.array(bullet.getMatrixFromQuaternion(turned)).reshape(3, 3).T @ axis
+            total += mass * float(arm @ arm) + float(local @ (np.array(tensor) * local))
+        return total
+
+    def _below(self, joint: int) -> list[int]:
+        """Indices of the links that a joint moves."""
+        moved = [joint]
+        for k, info in enumerate(self._now.infos):  # parents come first
+            if info[16] in moved:
+                moved.append(k)
+        return moved
+
+    def max_safe_force(self, values: FloatArray) -> FloatArray:
+        """Implement `Engine`.
+
+        Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
+        is light where those give way is thrown back by more.
+        """
+        torques, speeds = 1e-2 * self.inertias(values), []
+        self.place(values, contacts=False, gravity=False, released=range(len(values)))
+        for joint, torque in enumerate(torques.tolist()):
+            self._now.set(values.tolist())
+            self.apply(joint, torque)
+            self._now.client.stepSimulation()
+            speeds.append(abs(float(self.state()[1][joint])))
+        return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
+
+    def apply(self, joint: int, force: float) -> None:
+        """Implement `Engine`."""
+        now = self._now
+        now.client.setJointMotorControl2(now.body, now.places[joint], bullet.TORQUE_CONTROL, force=force)
+
+    def command(self, values: FloatArray, speeds: FloatArray | None = None) -> None:
+        """Implement `Engine`; servos are led there in the steps that follow."""
+        if self._servos is not None:
+            self._servos.wanted, self._servos.speeds = values, speeds
+        elif self._file is None:
+            self._pulled = np.asarray(values, dtype=np.float64)
+        else:
+            now = self._now
+            for k, wanted in zip(now.places, values.tolist(), strict=True):
+                now.client.setJointMotorControl2(now.body, k, bullet.POSITION_CONTROL, targetPosition=wanted)
+            now.commanded.update(now.places)
+
+    def weld(self) -> None:
+        """Implement `Engine`."""
+        assert self._servos is not None
+        assert self._spec is not None
+        assert self._spec.grip is not None
+        robot, grip, tool = self._servos.model, self._spec.grip, self._servos.placed.tool
+        T_world_tool = robot.frame(tool)
+        T_tool, T_part = (
+            np.linalg.inv(side.centre(link)) @ T_world_tool for side, link in ((robot, tool), (self._object, grip.link))
+        )
+        weld = robot.client.createConstraint(
+            robot.body,
+            robot.links[tool],
+            self._object.body,
+            self._object.links[grip.link],
+            bullet.JOINT_FIXED,
+            [0.0, 0.0, 0.0],
+            T_tool[:3, 3].tolist(),
+            T_part[:3, 3].tolist(),
+            *(quaternion_of(T[:3, :3], real_last=True) for T in (T_tool, T_part)),
+        )
+        robot.client.changeConstraint(weld, maxForce=grip.weld_force)
+
+    def unlock(self, joints: Iterable[str]) -> None:
+        """Implement `Engine`."""
+        for name in joints:
+            self._now.brake(self._now.joints[name], 0.0)
+
+    def observe(self) -> ObjectState:
+        """Implement `Engine`."""
+        (values, speeds), link = self._now.motion(self._leaders), self._link_state()
+        T = _pose_of(link[4], link[5])
+        return ObjectState(
+            values=values,
+            speeds=speeds,
+            hold=self._at_hold(link),
+            anchor=T[:3, 3],
+            axis=T[:3, :3] @ self._point.axis,
+        )
+
+    def touch(self) -> FloatArray:
+        """Implement `Engine`."""
+        assert self._servos is not None
+        links = self._servos.placed.finger_links
+        forces = np.zeros((len(links), 3))
+        rows = {self._servos.model.links[link]: row for row, link in enumerate(links)}
+        held = {self._object.links[link] for link in self._point.body}
+        for point in self._robot_contacts():
+            if point[3] in rows and point[4] in held:
+                forces[rows[point[3]]] += point[9] * np.array(point[7])
+        return np.asarray(np.linalg.norm(forces, axis=1))
+
+    def resist(self, damping: FloatArray, friction: FloatArray, hand: PullingHand | None = None) -> None:
+        """Implement `Engine`; with the next `vary`."""
+        self._damping, self._friction, self._hand = damping, friction, hand
+
+    def vary(self, drawn: Variation) -> None:
+        """Implement `Engine`."""
+        client, body = self._object.client, self._object.body
+        for index, (mass, moments, friction), factor in zip(
+            self._document_links, self._link_facts, drawn.mass.tolist(), strict=True
+        ):
+            client.changeDynamics(
+                body, index, lateralFriction=drawn.surface * friction, linearDamping=0.0, angularDamping=0.0
+            )
+            if index != _BASE:  # a base that is given a mass is no longer fixed
+                client.changeDynamics(
+                    body, index, mass=factor * mass, localInertiaDiagonal=[factor * m for m in moments]
+                )
+        damping, friction_of = drawn.damping * self._damping, drawn.friction * self._friction
+        for k, index in enumerate(self._object.places):
+            client.changeDynamics(body, index, jointDamping=float(damping[k]))
+            if k not in self._followers:
+                # A motor that wants no speed and is as strong as the friction is friction.
+                self._object.brake(index, float(friction_of[k]))
+        self._move_root(drawn.T_root)
+
+    def close(self) -> None:
+        """Implement `Engine`."""
+        for world in {self._now, *self._worlds.values()}:
+            world.client.disconnect()
+
+
+ENGINE = PybulletEngine

@@ -1,8 +1,8 @@
-"""A world that runs: an object that is pulled at a point of a part, or an object beside a robot that servos move.
+"""Contents of an engine: a file, an object that is pulled at a point of a part, or one beside a robot with servos.
 
-Environments and executions of plans describe it (`WorldSpec`), every engine with `EngineEntry.holds` builds it
-(`engines.open_world`), and what it can then do is said at `MujocoWorld`. Joints and
-links are in the order of the document.
+Validation opens a file as its users do (`OpenedFile`); environments and executions of plans describe a world
+(`WorldSpec`), which every engine with `EngineEntry.holds` builds. Joints and links of a world are in the order of the
+document.
 """
 
 from __future__ import annotations
@@ -37,6 +37,17 @@ class ServoSettings(Protocol):
     """Of the robot's surfaces."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class OpenedFile:
+    """A file alone as its users load it: untouched, its base fixed, with the engine's own defaults."""
+
+    urdf: Path
+    root: str
+    """Name of its first link."""
+    on_floor: bool = False
+    """Its base is free, and `place` sets it on a floor with its lowest point (`EngineEntry.floor`)."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlacedModel:
     """A model whose root is fixed in the world."""
@@ -49,7 +60,7 @@ class PlacedModel:
     apart: tuple[tuple[str, str], ...] = ()
     """Pairs of links that do not act on each other."""
     locked: Mapping[str, float] = field(default_factory=dict)
-    """Leaders that are held at a value [rad or m] until `EngineWorld.release`."""
+    """Leaders that are held at a value [rad or m] until `Engine.unlock`."""
     damping: Mapping[str, float] = field(default_factory=dict)
     """Least damping of joints, over the inertia that they move [1/s]; PyBullet's solver damps by itself."""
 

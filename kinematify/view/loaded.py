@@ -165,7 +165,7 @@ class LoadedModel:
             InputError: PyBullet refuses the file.
         """
         _engine("pybullet", "pybullet")
-        from kinematify.simulation.engine_file import Unloadable  # noqa: PLC0415  # with PyBullet
+        from kinematify.simulation.engine import Unloadable  # noqa: PLC0415  # with PyBullet
         from kinematify.simulation.pybullet_engine import load_with_loops  # noqa: PLC0415
 
         try:

@@ -20,8 +20,9 @@ from kinematify.refinement.repair import Fix, fix
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.robot.read import read_robot
-from kinematify.simulation.engine_file import Unloadable
-from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
+from kinematify.simulation.engine import Unloadable
+from kinematify.simulation.engines import DEFAULT_ENGINES, open_engine
+from kinematify.simulation.world import OpenedFile
 from kinematify.validation.finding import Cause, CheckResult, Finding, JointSummary, Severity, Status
 from kinematify.validation.run.report import ValidationReport
 from kinematify.versions import NO_WHEELS
@@ -47,7 +48,7 @@ def refusals(urdf: Path, engines: Sequence[str]) -> dict[str, str]:
     found = {}
     for engine in engines:
         try:
-            load_file(engine, urdf, "")
+            open_engine(engine, OpenedFile(urdf=urdf, root=""))
         except Unloadable as error:
             if not error.floats:
                 found[engine] = str(error)

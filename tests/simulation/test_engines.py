@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import re
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -9,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from kinematify.errors import EnvironmentFault
-from kinematify.simulation.engines import ENGINES, EngineEntry, require_engine
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, EngineEntry, require_engine
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run import needs
 from tests.simulation.point_engine import ENTRY
@@ -22,6 +24,27 @@ def test_engine_that_is_not_installed_is_reported_with_the_way_to_get_it(monkeyp
     monkeypatch.setitem(ENGINES, "absent", absent)
     with pytest.raises(EnvironmentFault, match=r"Absent needs no-such-engine, .* install .*no-such-engine"):
         require_engine("absent")
+
+
+def table() -> list[list[str]]:
+    """Rows of the table of what engines can."""
+    page = Path("docs/write_checks.md").read_text("utf-8")
+    rows = page[page.index("| what it can |") :].splitlines()
+    return [[cell.strip() for cell in row.strip("|").split("|")] for row in rows if row.startswith("|")]
+
+
+def test_the_page_says_what_each_engine_can() -> None:
+    titles, _, *rows = table()
+    for entry in (ENGINES[name] for name in DEFAULT_ENGINES):
+        engine = importlib.import_module(entry.module).ENGINE
+        public = {name for name, value in vars(engine).items() if callable(value) and not name.startswith("_")}
+        said: set[str] = set()
+        for _, field, methods, *cells in rows:
+            can = cells[titles[3:].index(entry.title)] == "yes"
+            assert can is (field == "every one" or bool(getattr(entry, field.strip("`"))))
+            said |= set(re.findall(r"`(\w+)`", methods.split(", of")[0])) if can else set()
+        assert public == said
+        assert len(public) <= 20
 
 
 def test_an_engine_of_one_file_runs_all_checks_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,7 +14,9 @@ import pytest
 import trimesh
 
 from kinematify.config.validation import load_settings
-from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
+from kinematify.simulation.engine_runs import drive, overlaps, rest, row, script
+from kinematify.simulation.engines import DEFAULT_ENGINES, open_engine
+from kinematify.simulation.world import OpenedFile
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
@@ -97,7 +99,7 @@ def test_a_link_that_an_engine_puts_elsewhere_is_named_with_its_joint(tmp_path: 
     drawer, shift = cabinet().parts[1], (0.0, 0.0, 0.01)
     other = cabinet().with_part("drawer", at=tuple(a + b for a, b in zip(drawer.at, shift, strict=True)))
     (tmp_path / "other").mkdir()
-    vars(context)["loading"] = load_file(engine, other.write(tmp_path / "other"), "body")
+    vars(context)["loading"] = open_engine(engine, OpenedFile(urdf=other.write(tmp_path / "other"), root="body"))
     result = OpenCheck(id="KV807", engine=engine)
     CHECKS["KV807"].run(result, context)
     (finding,) = result.findings
@@ -123,7 +125,7 @@ def test_the_code_of_a_run_at_rest_repeats_it(tmp_path: Path, engine: str) -> No
     (door,) = (travel for travel in context.travels if travel.joint == "door_joint")
     way = context.way(context.passive_run, door)
     assert np.ptp(way) > 0.01, "it falls"
-    code = context.loaded.script("rest", context.values, joint=door.joint, seconds=context.settings.seconds)
+    code = script(context.loaded, "rest", context.values, joint=door.joint, seconds=context.settings.seconds)
     assert printed(code) == pytest.approx([way.min(), way.max()], abs=1e-6)
 
 
@@ -156,8 +158,8 @@ def test_a_pair_that_stops_a_joint_is_in_contact_at_the_value_that_is_named(tmp_
     group = tell(partial(needs.engine, name="pybullet"), context.request)
     (finding,) = group.results["KV804"].findings
     assert finding.q is not None
-    overlaps = context.loaded.overlaps({**context.values, **finding.q})
-    assert finding.pair in [item.links for item in overlaps]
+    found = overlaps(context.loaded, {**context.values, **finding.q})
+    assert finding.pair in [item.links for item in found]
 
 
 def test_links_across_a_fixed_joint_do_not_jam_in_pybullet(tmp_path: Path) -> None:
@@ -465,3 +467,13 @@ def test_an_mjcf_whose_outer_body_has_no_name_is_placed_as_its_engine_does(tmp_p
     assert [check.status for check in report.checks if check.check == "KV807" and check.engine == "mujoco"] == [
         Status.PASS
     ]
+
+
+def test_pybullet_has_its_motors_back_after_pushes_and_drives(tmp_path: Path) -> None:
+    context = AsLoadedContext(request=request_of(cabinet(), tmp_path), engine="pybullet")
+    values, first = context.values, context.travels[0]
+    fresh = context.left_without_contacts
+    context.loaded.max_safe_force(row(context.loaded, values))
+    drive(context.loaded, first.joint, values, first.upper, 0.5)
+    again = rest(context.loaded, values, context.settings.seconds, contacts=False)
+    np.testing.assert_array_equal(fresh.seen, again.seen)

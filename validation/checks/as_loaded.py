@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
-from kinematify.simulation.engine_file import Unloadable
+from kinematify.simulation.engine import Unloadable
+from kinematify.simulation.engine_runs import poses, script
 from kinematify.validation.check import CauseScope, OpenCheck, check
 from kinematify.validation.checks.shared import AT_REST, NOT_A_BODY, late
 from kinematify.validation.finding import Cause, Severity
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.robot.mechanism import Travel
-    from kinematify.simulation.engine_file import EngineRun, Overlap
+    from kinematify.simulation.engine_runs import EngineRun, Overlap
     from kinematify.validation.as_loaded_context import AsLoadedContext, VelocityProbe
 
 _RUNS = attrgetter("runs")
@@ -108,7 +109,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             f"The joint {name} of the file does not move in {context.title}, which has lost it or taken it for fixed.",
             f"Write the joint {name} with a type, axis and limits that {context.title} reads.",
             joint=name,
-            reproduction=context.loaded.script("joints"),
+            reproduction=script(context.loaded, "joints"),
         )
     result.measured["read"] = float(len(context.mechanism.joints) - len(context.lost) - len(context.misread))
     for joint in context.misread:
@@ -119,7 +120,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             f"in {context.title}.",
             f"Give {joint.name} a lower limit that is less than the upper one; what does not move has a fixed joint.",
             joint=joint.name,
-            reproduction=context.loaded.script("joints"),
+            reproduction=script(context.loaded, "joints"),
         )
 
 
@@ -193,7 +194,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=overlap.depth,
                 limit=limit,
                 unit="m",
-                reproduction=context.loaded.script("overlap", context.values, links=overlap.links),
+                reproduction=script(context.loaded, "overlap", context.values, links=overlap.links),
             )
 
 
@@ -224,8 +225,8 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
             f"Left alone, the model comes apart in {context.title}: {complaint}.",
             "Give every moving link a plausible mass and inertia, and fix overlaps at rest first.",
             severity=_at_most_warning(context, plainly=context.left_without_contacts.complaint is not None),
-            reproduction=context.loaded.script(
-                "rest", context.values, joint=context.travels[0].joint, seconds=context.settings.seconds
+            reproduction=script(
+                context.loaded, "rest", context.values, joint=context.travels[0].joint, seconds=context.settings.seconds
             ),
         )
         return
@@ -290,8 +291,8 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
         q={travel.joint: farthest},
         value=farthest,
         unit=travel.unit,
-        reproduction=context.loaded.script(
-            "rest", context.values, joint=travel.joint, seconds=context.settings.seconds
+        reproduction=script(
+            context.loaded, "rest", context.values, joint=travel.joint, seconds=context.settings.seconds
         ),
     )
 
@@ -373,7 +374,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe,
         value=stop,
         limit=run.end,
         unit=travel.unit,
-        reproduction=context.loaded.script("push", run.values, push=(push, run.pushed.steps)),
+        reproduction=script(context.loaded, "push", run.values, push=(push, run.pushed.steps)),
     )
 
 
@@ -444,7 +445,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=stop,
                 limit=end,
                 unit=travel.unit,
-                reproduction=context.loaded.script("push_alone", run.values, push=(run.push, run.pushed.steps)),
+                reproduction=script(context.loaded, "push_alone", run.values, push=(run.push, run.pushed.steps)),
             )
 
 
@@ -471,7 +472,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     """
     run = context.released
     seconds = context.settings.release_seconds
-    reproduction = context.loaded.script("release", context.values, speeds=context.speeds, seconds=seconds)
+    reproduction = script(context.loaded, "release", context.values, speeds=context.speeds, seconds=seconds)
     if run.complaint is not None:
         result.find(
             f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
@@ -520,7 +521,7 @@ def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) 
     above, worst = context.robot.joint_above, dict[str, tuple[float, float, float, dict[str, float]]]()
     for values in context.ends:
         ours = forward_kinematics(context.robot, values)
-        for link, pose in context.loaded.poses(values).items():
+        for link, pose in poses(context.loaded, values).items():
             off = pose[:3] - ours[link][:3]
             away = float(np.linalg.norm(off[:, 3]))
             turned = float(np.linalg.norm(off[:, :3])) / np.sqrt(2.0)  # 2 sin(angle / 2)

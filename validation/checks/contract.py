@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.simulation.engine_file import Unloadable
-from kinematify.simulation.engines import stand
+from kinematify.simulation.engine import Unloadable
+from kinematify.simulation.engine_runs import stand
+from kinematify.simulation.engines import open_engine
+from kinematify.simulation.world import OpenedFile
 from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.as_loaded import not_loaded, nothing_moves
 from kinematify.validation.finding import Cause, Severity
@@ -42,8 +44,9 @@ def rests_on_floor(result: OpenCheck, context: AsLoadedContext) -> None:
     Remedy: Write collision geometry where the visible geometry is, and masses and inertias that belong to it.
     """
     request, values = context.request, {} if isinstance(context.loading, Unloadable) else context.values
+    file = OpenedFile(urdf=request.native or request.resolved or request.urdf, root=context.robot.root, on_floor=True)
     try:
-        run = stand(context.engine, request.native or request.resolved or request.urdf, values, _SECONDS)
+        run = stand(open_engine(context.engine, file), values, _SECONDS)
     except Unloadable as error:
         result.block(f"MuJoCo does not set it on a floor: {error}")
         return
