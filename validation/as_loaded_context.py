@@ -76,9 +76,15 @@ class AsLoadedContext:
         return ENGINES[self.engine].contact_flag
 
     @property
+    def opened(self) -> str:
+        """The engine, and that it has a copy of the file, if so."""
+        copy = self.loading is not self.bare
+        return f"{self.title} (a copy with {self.copied})" if copy else self.title
+
+    @property
     def how(self) -> str:
-        """The engine, with its flag where contacts need one."""
-        return f"{self.title} with {self.flag}" if self.flag else self.title
+        """The same, with its flag where contacts need one."""
+        return self.opened.replace(self.title, f"{self.title} with {self.flag}", 1) if self.flag else self.opened
 
     @property
     def settings(self) -> AsLoadedSettings:

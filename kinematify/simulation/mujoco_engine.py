@@ -33,7 +33,6 @@ from kinematify.simulation.world import (
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-    from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import LeaderMechanism
@@ -42,13 +41,13 @@ _RESERVED = "world"
 """MuJoCo's name of the outside; a link of this name is loaded under another one."""
 
 
-def _parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> tuple[mujoco.MjSpec, dict[str, str]]:
+def _parsed(placed: PlacedModel, step: float) -> tuple[mujoco.MjSpec, dict[str, str]]:
     """Parse a file; also returns its links in the document's order with their names as MuJoCo knows them.
 
     Raises:
         Unloadable: MuJoCo cannot.
     """
-    robot = etree.parse(str(urdf)).getroot()
+    mechanism, robot = placed.mechanism, etree.parse(str(placed.urdf)).getroot()
     stand_in = _free_name(mechanism.links)
     for element in robot.iter("link", "parent", "child"):
         key = "name" if element.tag == "link" else "link"
@@ -58,15 +57,17 @@ def _parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> tuple[mujo
         spec = mujoco.MjSpec.from_string(etree.tostring(robot, encoding="unicode", pretty_print=True))
     except ValueError as error:
         raise Unloadable(str(error)) from error
-    spec.modelfiledir = str(urdf.parent)
-    spec.compiler.fusestatic = False
-    set_options(spec, step)
+    spec.modelfiledir = str(placed.urdf.parent)
+    spec.compiler.fusestatic, spec.compiler.balanceinertia = False, True
+    _set_options(spec, step)
     # Contacts between a body and its parent count; what is there from the start is allowed pair by pair.
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT.value
     for number, geom in enumerate(spec.geoms):
         geom.name = f"kinematify geom {number}"
     names = {name: stand_in if name == _RESERVED else name for name in mechanism.links}
     _close_loops(spec, names, mechanism)
+    for first, second in placed.apart:
+        spec.add_exclude(bodyname1=names[first], bodyname2=names[second])
     return spec, names
 
 
@@ -81,7 +82,7 @@ def _close_loops(spec: mujoco.MjSpec, names: Mapping[str, str], mechanism: Leade
         pin.solref[:2], pin.solimp[:3] = PIN_SOLREF, PIN_SOLIMP
 
 
-def set_options(spec: mujoco.MjSpec, step: float) -> None:
+def _set_options(spec: mujoco.MjSpec, step: float) -> None:
     """Set a time step [s], and the options that everything shares."""
     spec.option.timestep = step
     spec.option.gravity = [0.0, 0.0, -GRAVITY]
@@ -127,7 +128,7 @@ class _Compiled:
 @lru_cache(maxsize=24)
 def _compiled(spec: WorldSpec) -> _Compiled:
     world = mujoco.MjSpec()
-    set_options(world, spec.step)
+    _set_options(world, spec.step)
     world.compiler.balanceinertia = True
     # What blows up is reported, not silently set back to the start.
     world.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT.value
@@ -153,14 +154,6 @@ def _compiled(spec: WorldSpec) -> _Compiled:
     if spec.robot is not None:
         _set_servos(model, spec, spec.robot)
     return _Compiled(model=model, object_links=tuple(names.values()), robot_links=robot_links)
-
-
-def _parsed(placed: PlacedModel, step: float) -> tuple[mujoco.MjSpec, dict[str, str]]:
-    source, names = _parse(placed.urdf, placed.mechanism, step=step)
-    source.compiler.balanceinertia = True
-    for first, second in placed.apart:
-        source.add_exclude(bodyname1=names[first], bodyname2=names[second])
-    return source, names
 
 
 def _attach(world: mujoco.MjSpec, part: mujoco.MjSpec, prefix: str, T_world_root: FloatArray) -> None:

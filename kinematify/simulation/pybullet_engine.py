@@ -507,7 +507,7 @@ class PybulletEngine(Engine):
         self._leaders = [loaded.places[k] for k in leaders]
         self._followers = [k for k, name in enumerate(names) if k not in leaders and name not in self._passive]
         self._T_base = _pose_of(*client.getBasePositionAndOrientation(loaded.body))
-        self._link_facts = [self._facts_of(index) for index in self._document_links]
+        self._dynamics = [client.getDynamicsInfo(loaded.body, index)[:3] for index in self._document_links]
         self._move_root(np.eye(4))
         self._servos = None if spec.robot is None else _Servos(loaded, spec.robot, spec.grip)
         if spec.point is not None:
@@ -518,11 +518,6 @@ class PybulletEngine(Engine):
     def _document_links(self) -> list[int]:
         """PyBullet's indices of the object's links, in the order of the document."""
         return [self._object.links[name] for name in self._mechanism.links]
-
-    def _facts_of(self, index: int) -> tuple[float, list[float], float]:
-        """Mass [kg], principal moments [kg m^2] and friction of a link."""
-        info = self._object.client.getDynamicsInfo(self._object.body, index)
-        return float(info[0]), list(info[2]), float(info[1])
 
     def _move_root(self, T_root: FloatArray) -> None:
         assert self._spec is not None
@@ -830,8 +825,8 @@ class PybulletEngine(Engine):
     def vary(self, drawn: Variation) -> None:
         """Implement `Engine`."""
         client, body = self._object.client, self._object.body
-        for index, (mass, moments, friction), factor in zip(
-            self._document_links, self._link_facts, drawn.mass.tolist(), strict=True
+        for index, (mass, friction, moments), factor in zip(
+            self._document_links, self._dynamics, drawn.mass.tolist(), strict=True
         ):
             client.changeDynamics(
                 body, index, lateralFriction=drawn.surface * friction, linearDamping=0.0, angularDamping=0.0

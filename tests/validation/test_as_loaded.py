@@ -477,3 +477,16 @@ def test_pybullet_has_its_motors_back_after_pushes_and_drives(tmp_path: Path) ->
     drive(context.loaded, first.joint, values, first.upper, 0.5)
     again = rest(context.loaded, values, context.settings.seconds, contacts=False)
     np.testing.assert_array_equal(fresh.seen, again.seen)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_finding_of_a_copy_names_it(engine: str, tmp_path: Path) -> None:
+    model = collision(cabinet(), "drawer", Box(size=(0.6, 0.6, 0.3)))
+    request, refused = request_of(model, tmp_path), tmp_path / "refused.urdf"
+    refused.write_text('<robot name="refused"><joint/></robot>')
+    given = replace(request, urdf=refused, resolved=request.urdf)
+    for asked, named in ((given, True), (request, False)):
+        findings = tell(partial(needs.engine, name=engine), asked).results["KV802"].findings
+        assert findings
+        for item in findings:
+            assert (" (a copy with absolute paths of the meshes)" in item.message) is named

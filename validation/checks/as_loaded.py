@@ -75,7 +75,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
     base; `buildModelFromUrdf`), is there with every joint that moves, and with its limits. Like all of KV8xx it is an
     error if it fails in every engine, or in one of those that `--engines` names, else a warning. So is a file that an
-    engine opens only from a copy with absolute paths of its meshes; the other checks look at that copy then.
+    engine opens only from a copy with absolute paths of its meshes; findings of the others name that copy then.
 
     Why it matters: This is what users load.
 
@@ -106,7 +106,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     result.measured["joints"] = float(len(context.mechanism.joints))
     for name in context.lost:
         result.find(
-            f"The joint {name} of the file does not move in {context.title}, which has lost it or taken it for fixed.",
+            f"The joint {name} of the file does not move in {context.opened}, which has lost it or taken it for fixed.",
             f"Write the joint {name} with a type, axis and limits that {context.title} reads.",
             joint=name,
             reproduction=script(context.loaded, "joints"),
@@ -117,7 +117,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
         loaded = f"{lower:.4g} to {upper:.4g}" if np.isfinite([lower, upper]).all() else "none"
         result.find(
             f"The joint {joint.name} has the limits {joint.lower:.4g} to {joint.upper:.4g} in the file, and {loaded} "
-            f"in {context.title}.",
+            f"in {context.opened}.",
             f"Give {joint.name} a lower limit that is less than the upper one; what does not move has a fixed joint.",
             joint=joint.name,
             reproduction=script(context.loaded, "joints"),
@@ -222,7 +222,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
     complaint = context.passive_run.complaint
     if complaint is not None:
         result.find(
-            f"Left alone, the model comes apart in {context.title}: {complaint}.",
+            f"Left alone, the model comes apart in {context.opened}: {complaint}.",
             "Give every moving link a plausible mass and inertia, and fix overlaps at rest first.",
             severity=_at_most_warning(context, plainly=context.left_without_contacts.complaint is not None),
             reproduction=script(
@@ -435,7 +435,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
             unit = "N m" if travel.turns else "N"
             result.find(
                 f"Pressed with {run.push.force:.3g} {unit}, within its effort, against its limit of {end:.4g} "
-                f"{travel.unit} in {context.title}, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
+                f"{travel.unit} in {context.opened}, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
                 f"{' at least' if through else ''}.",
                 f"Give {travel.joint} limits that {context.title} keeps (the lower one less than the upper one), or a "
                 "part of plausible mass and inertia; a joint that does not move is a fixed one.",
@@ -475,7 +475,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     reproduction = script(context.loaded, "release", context.values, speeds=context.speeds, seconds=seconds)
     if run.complaint is not None:
         result.find(
-            f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
+            f"Given a push and let go in {context.opened}, the model comes apart: {run.complaint}.",
             "Give every moving link a plausible mass and inertia, and every joint a damping that is not negative.",
             cause=Cause.PHYSICS,
             reproduction=reproduction,
@@ -487,7 +487,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     result.measured |= {"growth_J": max(0.0, growth), "kinetic_J": kinetic}
     if growth > limit:
         result.find(
-            f"Given a push and let go in {context.title}, the model gains {growth:.3g} J, "
+            f"Given a push and let go in {context.opened}, the model gains {growth:.3g} J, "
             f"{growth / max(kinetic, 1e-12):.0%} of its largest kinetic energy.",
             "Correct inertia tensors and overlaps at rest, or simulate with a smaller time step.",
             value=growth,
@@ -532,7 +532,7 @@ def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) 
     for link, (away, _, turned, values) in worst.items():
         if link in above and above[link].parent not in worst:
             result.find(
-                f"{context.title} puts the link {link} {away * 1e3:.3g} mm from where the file's kinematics put it, "
+                f"{context.opened} puts the link {link} {away * 1e3:.3g} mm from where the file's kinematics put it, "
                 f"turned by {np.degrees(2.0 * np.arcsin(min(turned / 2.0, 1.0))):.3g} deg.",
                 f"Write the joint {above[link].name} with a unit axis, plain numbers and a type that engines know.",
                 joint=above[link].name,
