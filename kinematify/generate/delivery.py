@@ -40,8 +40,10 @@ _UPRIGHT, _LEVEL = 0.95, 0.2  # of the z component of an axis
 _LARGER = 5.0  # times as large or as small as usual the whole may be
 _ROUND = 0.06  # of a side, by which two sides of what is round differ
 _FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cylinder 0.785
+_SHOWN = 0.5  # of the surface, that has the look of the whole at least
 _TOWARDS = 0.3  # of a way, that leads to a side
 _GAP = 0.05  # between several [m]
+_OWN_LOOK = ("rubber", "glass", "mirror")
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
 _PICKED = {**_SIDES, "rear": (1, 1), "upper": (2, 1), "lower": (2, -1)}
@@ -50,8 +52,9 @@ _JOINTS = words_of("hinge slide tilt pan spin")
 _ALIKE = pairs(
     "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
     "cab cabin house|cabin cab house|boom jib|sail blade rotor|wing leaf|screen display lid|display screen|dial knob|"
-    "handle lever|lever handle|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|spout neck|"
-    "rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|cymbal top|swing seat"
+    "handle lever|lever handle|arm lever|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|"
+    "spout neck|rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|"
+    "cymbal top|swing seat"
 )
 """Noun -> what it may be where no part is called so."""
 _BASE = words_of("body base frame housing case casing")
@@ -164,6 +167,9 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
         with suppress(InputError):
             made = build(family, {**values, **fitted}, seed=seed)
     made = _sized(made, request, faults)
+    made, shown = _painted(made, *(str(request.parameters.get(look, "")) for look in ("material", "color")))
+    if shown < _SHOWN:
+        faults.append(f"look of the whole: as asked for on {100 * shown:.0f} % of the surface")
     if _mirror_helps(family, made, request):
         made = made.scaled(1.0, mirrored=True)
     missing = []
@@ -338,6 +344,27 @@ def _adjusted(made: Blueprint, names: Sequence[str], part: PartRequest) -> Bluep
     return made
 
 
+def _painted(made: Blueprint, material: str, color: str) -> tuple[Blueprint, float]:
+    """Give what is most of the surface the look of the whole where too little has it; with the share that has it then.
+
+    What is of rubber or glass keeps its own.
+    """
+    for again in (True, True, False):
+        areas: dict[str, float] = {}
+        for part in made.parts:
+            look = part.appearance.materials[0].name if part.appearance else ""
+            if not look.endswith(_OWN_LOOK):
+                areas[look] = areas.get(look, 0.0) + part.area
+        others = {name for name in areas if not (name.startswith(color) and name.endswith(material))}
+        share = 1.0 - sum(areas[name] for name in others) / max(sum(areas.values()), 1e-12)
+        if share >= _SHOWN or not again:
+            break
+        most = max(others, key=areas.__getitem__)
+        alike = [part.name for part in made.parts if part.appearance and part.appearance.materials[0].name == most]
+        made = looking(made, alike, material, color)
+    return made, share
+
+
 def looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
     """Return an object with parts painted, or of another material; handles on them keep their own look."""
 
@@ -429,7 +456,7 @@ def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[s
         if row < other_row and min(box.mean(axis=0)[2] for box in above) <= max(box.mean(axis=0)[2] for box in below):
             yield f"{one}: not above the {other}"
     for (one, mine), (other, its) in combinations(meant, 2):
-        if mine and mine == its:
+        if mine and mine == its and not {one, other} & set(_JOINTS):
             yield f"{other}: it is the same as the {one}, {listed(sorted(mine)[:4])}"
 
 
@@ -448,7 +475,11 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     if parameter and (there < 2 or (part.count and there > part.count and there % part.count == 0)):
         there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
     stems = {stem_of(name).replace("_", " ") for name in names}
-    groups = [sum(stem_of(name).replace("_", " ") == stem for name in names) for stem in stems]
+    alike = {name for other in _ALIKE.get(noun, "").split() for name in names_called(family, made, other)}
+    groups = [
+        len({*names, *alike}),
+        *(sum(stem_of(name).replace("_", " ") == stem for name in names) for stem in stems),
+    ]
     if part.count not in (None, there) and (part.count not in groups or parameter) and (names or parameter):
         yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
     if part.at_least and names and there < part.at_least and (parameter or noun.rsplit(maxsplit=1)[-1] in _APART):
@@ -523,8 +554,10 @@ def goes_towards(made: Blueprint, joint: BlueprintJoint, side: str) -> bool:
         along = float(step[axis]) * sign
         return (abs(along) if low < -1e-6 else along) > _TOWARDS
     away = part.bounds.mean(axis=0) - shut.assembly.bounds.mean(axis=0)
-    outwards = float(step @ away) / max(float(np.linalg.norm(away)), 1e-12) - float(step[1])
-    return (outwards > _TOWARDS) if side == "out" else (outwards < -_TOWARDS)
+    outwards, front = float(step @ away) / max(float(np.linalg.norm(away)), 1e-12), -float(step[1])
+    if abs(front) <= _TOWARDS:  # a door or a drawer that comes to the front goes out
+        front = outwards
+    return max(front, outwards) > _TOWARDS if side == "out" else front < -_TOWARDS
 
 
 def are_round(made: Blueprint, names: Sequence[str]) -> bool:

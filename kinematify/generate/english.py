@@ -85,7 +85,7 @@ degree 0.15: slightly
 degree 1: fully wide completely
 stative: starts begins stands_ standing shown starting beginning drawn left currently initially
 where: up down out in back forward forwards outward outwards inward inwards away open upward upwards downward downwards
-where: off through sideways over flat apart together
+where: off through over flat apart together
 towards top: up upward upwards
 towards bottom: down downward downwards
 towards out: out outward outwards
@@ -107,6 +107,7 @@ place: in above over below beneath underneath opposite next_to in_front_of off b
 like: for like per than
 both: to_either_side to_both_sides to_each_side in_either_direction in_both_directions in_each_direction each_way
 both: either_way to_either_direction both_ways
+aside: behind beside opposite between in_front_of next_to
 beside row: side_by_side in_a_row next_to_each_other
 beside column: in_a_column one_above_the_other on_top_of_each_other
 lines row: row rows
@@ -119,9 +120,9 @@ use: suits remind reminds look looks work works need needs protect protects carr
 filler: please i we you like want need make build create generate give show draw design get me us hello hi hey thanks
 filler: let would wants wanted object item thing model piece side sides hand end ends kind type sort itself own u one_of
 filler: approximately roughly approx exactly about around whole throughout part parts each_other altogether total s
-filler: while mounted attached fixed connected placed located positioned arranged painted finished coloured colored
+filler: already mounted attached fixed connected placed located positioned arranged painted finished coloured colored
 filler: color colour made built there here lines stacked set in_total fitted independently have design looking ones one
-filler: middle center edge line corner done shaped this just only very really quite rather too
+filler: while edge line corner done shaped this just only very really quite rather too
 plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant fancy cute beautiful nice cool
 plain: robust strong durable sturdy solid professional practical simple plain standard typical normal regular usual
 plain: common new old good great quality ergonomic comfortable realistic detailed basic scandinavian victorian pretty
@@ -150,7 +151,7 @@ OF_SOME = re.compile(
     r"|one (?:\w+ )+?and one (?:\w+)$|from the (?:bottom|left|right))\b"
 )
 """Clauses about some of the parts, which are not read."""
-_OPINION = re.compile(r"\w{3,}(?:ly|ous|ful|ish|ive|some|esque)$")
+_OPINION = re.compile(r"\w{3,}(?:(?<!al)ly|ous|ful|ish|ive|some|esque)$")
 """Adverbs, and adjectives that say what somebody thinks of a thing."""
 _AMBIGUOUS = words_of("none yes no top bottom left right side plain one two four off fixed beside below within")
 _OF = "of|is|to be|about|with|at|around"
@@ -171,6 +172,10 @@ _BARE = re.compile(
     rf"|from [-−]?{_NUMBER} to ([-−]?{_NUMBER})(?! ?(?:{_UNIT}))\b"
 )
 """A size or a range without a unit."""
+_BEFORE = re.compile(
+    rf"\b(width|depth|height|length|diameter|thickness)(?: (?:{_OF}))* ({_NUMBER} ?(?:{_UNIT}))(?![a-z])"
+)
+"""A size behind its name."""
 _PURPOSE = re.compile(
     r"\b(?:for|so (?:that|you|i|we)|suitable for|because|to (?:store|keep|hold|put|carry|hang|serve|sort|collect|"
     r"display|make|help|sit|use|match|go with|suit)) [^,;.:]*?(?=$|[,;.:]| with | that | having | whose | which )"
@@ -213,7 +218,11 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     ),
     (r"^for (?:my|our|the) \w+,? (?=an? )", ""),
     (r"^((?:an? |the )?)built in ", r"\1"),
-    (rf"\b(width|depth|height|length|diameter|thickness)(?: (?:{_OF}))* ({_NUMBER} ?(?:{_UNIT}))(?![a-z])", r"\2 \1"),
+    (
+        rf"((?:rotat|turn|swivel|spin|tilt|swing)\w*(?: (?:up|down|by|to|through))*) ({_NUMBER})(?=$|[,.;]| and )",
+        r"\1 \2 deg",
+    ),
+    (rf"± ?({_NUMBER})(?=$|[,.;]| and )", r"± \1 deg"),
     (r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick|across)\b)", " inch "),
 )
 """Spelling, and how it is read."""
@@ -255,6 +264,7 @@ def read_units(text: str) -> list[Unit]:
         plain = re.sub(pattern, instead, plain)
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
     plain = _BARE.sub(lambda found: _with_unit(found, plain), plain)
+    plain = _BEFORE.sub(r"\2 \1", plain)
     for purpose in _PURPOSE.findall(plain):
         asks = {what for word in key_of(purpose) for what in WORDS.get(word, ())} & {"motion", "number"}
         plain = plain if asks or re.search(r"\d", purpose) else plain.replace(purpose, " ")

@@ -70,7 +70,7 @@ _PHRASES = {
     "made": f"Y[^,h#q]*|[pio][pif_]*(?:(?=[qrx])|(?=c)(?!{_NOUN}))",
     "noun": f"[pio]?{_NOUN}|[pio]",
     "hinge": "H[pdP_i]*(?P<edge>s)_*",
-    "verb": "(?P<words>(?:g(?!b)|[mMNSHtke])(?:[mMNSHgtkevf_d]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
+    "verb": "(?P<words>(?:g(?!b)|[mMNSHtke])(?:[mMNSHgtkevf_dP]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
     "(?:[piodfvb_]*(?P<far>[qr])(?!D)(?:B|ok|k|(?P<then>[Sv]+))?)?",
     "attribute": "[cqxs]",
     "each": "P",
@@ -205,14 +205,13 @@ class Sentence:
         elif before in ("dwh" if word in _NAMED else "sDfcP" if word in ("one", "ones") else ""):
             role = "n"  # its tilt, the left one
         elif own:
-            role = "N" if "motion" in means else "n" if word == lemma(word) else "Z"
+            is_verb = re.search("(you|to|can) .|. (it|the)$", self._text(k - 1, k + 2))  # you pull the handle
+            role = ("m" if is_verb else "N") if "motion" in means else "n" if word == lemma(word) else "Z"
         elif word in ("in", "of"):
             role = word[0]
-        elif role == "D" and "place" in means:  # across
-            role = "D" if before == "q" else "p"
         elif role == "m" and word.endswith("s") and word[:-1] in WORDS:
             role = "M"
-        return role or ("f" if word.endswith("ly") else "a" if re.search("[^e]ed$|ing$", word) else "w")
+        return role or ("a" if re.search("[^e]ed$|ing$", word) else "w")
 
     def _named(self, words: list[str], limit: int) -> tuple[Kind, int, int] | None:
         for start in range(limit):
@@ -232,16 +231,13 @@ class Sentence:
         """
         head, name = lemma(self._text(self.stop - 1)), self._text(self.stop - 1)
         begin = self.roles.rfind("d", 0, self.start) + 1
-        self._take(range(begin), "-")
+        self._take(range(begin if self.roles.count("d", 0, begin) < 2 else 0), "-")
         facts, used = self._described(begin, self.start)[:2]
         count, pair = facts.pop("count", 1), "pair" in self._text(begin, self.start)
-        if count > 1 and _counted(self.family, head):
-            self._add(head, used, count=count)
-        elif name != head and not (pair and any(word.endswith(name) for word in self.family.words)):
+        if name != head and not (pair and any(word.endswith(name) for word in self.family.words)):
             self.copies = count
-        elif not pair and count > 1:
-            used = [k for k in used if self.roles[k] not in "#x"]
-        self._take(k for k in used if self.roles[k] == "#")
+        if pair or self.copies == count:
+            self._take(k for k in used if self.roles[k] == "#")
         self._add("", used, **facts)
         k = self.stop
         while k < len(self.units):
@@ -263,14 +259,11 @@ class Sentence:
     def _owner(self) -> str:
         return "" if self.fresh else self.subject
 
-    def _count(self, noun: str) -> int:
-        return int(self.things.get(noun, {}).get("count", 0))
-
     def _sign(self, found: Match) -> int:
         k, end = found.start(), self.roles.index(",", found.end())
         self.is_pushed = False
         if found[0] == ",":
-            self.fresh = not re.match("qD?,[^,]*qD,", self.roles[max(k - 2, 0) : k + 5].lstrip("#nNZ"))
+            self.fresh |= not re.match("qD?,[^,]*qD,", self.roles[max(k - 2, 0) : k + 5].lstrip("#nNZ"))
             self.is_shown, self.is_hinged, self.each = False, False, ""
             if OF_SOME.search(self._text(k + 1, end)):
                 self._take(range(k + 1, end), "!")
@@ -282,22 +275,18 @@ class Sentence:
         verb = found.end()
         end = _match("[^,hR]*", self.roles, verb).end()
         self.is_shown = self.fresh = False
-        if self.is_plural and self.roles[verb] == "M":
-            self.subject = ""  # a fan with three blades that turns
         if self.roles[verb] == "u":
             self._take((k for k in range(verb, end) if self.roles[k] not in "#q"), "-")
         return end if self.roles[verb] in "uwa" else verb
 
     def _rows(self, found: Match) -> None:
         """Read rows and columns, of the last part or of the next."""
-        beside, is_next = self._mean(found.start(), "beside"), not found["at"] or not self.subject
+        beside = self._mean(found.start(), "beside")
+        is_next = not (self.subject and (beside or found["at"]))
         line = beside or self._mean(self.roles.index("=", found.start()), "lines")
         lines, per = (int(self._mean(found.start(name), "number") or 0) for name in ("lines", "per"))
-        is_next, lines = is_next and not beside, max(lines, 1)
+        lines = max(lines, 1)
         facts = self.ahead if is_next else self.things.setdefault(self.subject, {})
-        if not is_next and not self.subject:  # nightstands next to each other
-            self._take(range(*found.span()) if self.copies > 1 else ())
-            return
         if per:
             facts.setdefault("count", lines * per)
         each, rest = divmod(facts.get("count", 0), lines)
@@ -345,7 +334,7 @@ class Sentence:
         if "bare" in facts:
             facts["size"] = {"length": facts.pop("bare"), **facts.get("size", {})}
         if self.each and not is_place:
-            if times := self._count(self.each):
+            if times := self.things.get(self.each, {}).get("count"):
                 facts["count"] = facts.get("count", 1) * times
             elif facts.get("count", 1) == 1:
                 facts["per"] = self.each
@@ -353,10 +342,6 @@ class Sentence:
         self.ahead, is_plural, noun = {}, words != lemma(words), f"{pick} {key}".strip()
         if pick and facts.get("count") == 1:
             del facts["count"]
-        elif article and noun in self.things:
-            if (facts | self.things[noun]).keys() - {"count"}:  # a glass door above a wooden door
-                used = []
-            facts["count"] = self.things[noun].pop("count", 1) + 1
         elif "count" not in facts and not (pick or noun in self.things or is_choice or is_place):
             counted = _counted(self.family, noun)
             several = {"at_least" if counted is None or counted.default else "count": 2}
@@ -495,17 +480,15 @@ class Sentence:
         value, si = numbers[-1]
         used.append(k)
         if self.roles[k] == "x":
-            if not si:
-                facts |= {"count": int(numbers[0][0] * value), "grid": (int(value), int(numbers[0][0]))}
-                return 1 + (self._text(k + 1) == "grid") + (self._text(k + 2) == "of")
             names = ["width", "depth", "height"]
-            usual = {item.name: float(item.default) for item in self.family.parameters if item.name in names}
+            known = {item.name for item in self.family.parameters}
             if len(numbers) == 2 and (
-                "depth" not in usual or any(unit.means.get("dimension") == "depth" for unit in self.units)
+                "depth" not in known or any(unit.text in ("deep", "depth") for unit in self.units)
             ):
                 names.remove("depth")
-                if (usual.get("width", 0.0) < usual.get("height", 0.0)) is (numbers[0][0] > 1.5 * value):
-                    names.reverse()  # a door of 2 m by 0.8 m
+            if not si:
+                used.pop()
+                names.clear()
             sizes.update(zip(names, (number for number, _ in numbers), strict=False))
             return 1
         step = k + 1 + (self.roles[k + 1 : k + 3] in ("iD", "oD"))
@@ -526,7 +509,8 @@ class Sentence:
             return self._range(found, k, owner)  # a gas lift of 10 cm
         k += self._modifier(k, k, facts, used, is_part=False)
         side = WORDS.get(facts.pop("pick", ""), {}).get("side")
-        facts |= {"side": side} if side and owner else {}
+        if side and owner:
+            facts["towards" if self.roles[found.start() - 1] in "mM" else "side"] = side
         if owner and "bare" in facts:
             facts["size"]["length"] = facts.pop("bare")
         self._add(owner, used if facts else (), **facts)
@@ -549,14 +533,14 @@ class Sentence:
         return found.end()
 
     def _hinge(self, found: Match) -> None:
-        k, self.is_hinged = found.start(), True
-        owner = self._owner if self._text(k) == "hinged" or self.roles[k - 1] not in ",&h" else ""
-        self._fact(found, owner, hinge=self._mean(found.start("edge"), "side"))
+        self.is_hinged = True
+        self._fact(found, hinge=self._mean(found.start("edge"), "side"))
 
     def _verb(self, found: Match) -> int:
         """Read how something moves, how far, or how it is shown."""
         how, share, stands, far, k = "", None, self.is_shown, found.start("far"), found.start()
-        owner = self._owner if self.roles[k] in "rq" or self._text(k).endswith("s") else self.subject
+        is_whole = self.roles[k] in "rq" or self._text(k).endswith("s") or "P" in found[0]
+        owner = self._owner if is_whole else self.subject
         for j in range(*found.span("words")):
             can, role = self.roles[j - 1] in "bR" and self._text(j - 1) not in ("is", "are"), self.roles[j]
             goes = self._text(j) == "open" and (can or (self.is_plural and not stands and far > 0))
@@ -580,7 +564,7 @@ class Sentence:
         elif far > 0:
             self._range(found, far, owner, how or "move", **facts)
         elif how:
-            self._fact(found, owner, motion=how, **facts)
+            self._fact(found, owner or (how if heads and how in ("hinge", "slide") else ""), motion=how, **facts)
         elif stands and share is not None:
             self._fact(found, owner, open=share)
         return found.end()
@@ -611,22 +595,14 @@ class Sentence:
                 if in_place and noun != subject in self.things:
                     self.things[subject].setdefault("per", noun)
 
-    def _place_side(self, found: Match) -> int:
-        side, end = self._mean(found.start("side"), "side"), found.end()
+    def _place_side(self, found: Match) -> None:
+        side = self._mean(found.start("side"), "side")
         if self._text(found.start()) in ("to", "towards") and self.roles[found.start() - 1] in "mMaSv&q":
             self._fact(found, towards=side)  # slides to the left
-        elif self.fresh or not self.subject:
-            if self._span(end + (self.roles[end] == "h")):
-                self.ahead["side"] = side
-                self._take(range(*found.span()))
         elif self.is_hinged and self.subject.startswith(tuple(_OPPOSITE)):
             self._fact(found, hinge=side)  # the left one hinged on the left, the right one on the right
-        elif self.subject == "hinge":
-            del self.things[self.subject]
-            self._add("", range(found.start() - 1, end), hinge=side)
         else:
             self._fact(found, side=side)
-        return end
 
     def _relation(self, found: Match) -> int:
         """Read that one part is above another, and the like."""
@@ -646,8 +622,6 @@ class Sentence:
 
     def _each(self, found: Match) -> None:
         self.fresh = False
-        if self.subject.endswith(self.several):
-            self.subject = self.several or self.subject
         self.each = self.subject if self.roles[found.end()] == "h" else ""
 
     def _rest(self, found: Match) -> None:
@@ -821,7 +795,7 @@ class Sentence:
         if "each_side" in facts and not on_both_sides(made, names):
             yield "not as many on either side"
         if (whose := facts.get("per")) and len(names) % max(len(names_called(self.family, made, whose)), 1):
-            yield f"there {'is' if len(names) == 1 else 'are'} {len(names)}, not as many for each {whose}"
+            yield f"{len(names)} there, not as many for each {whose}"
 
     def _unread(self, taken: Mapping[int, str], lost: set[str], there: set[str]) -> Iterator[str]:
         """Words of content that nothing took, or a noun that is no part; those of a clause together."""
@@ -831,7 +805,7 @@ class Sentence:
             owner = taken.get(k)
             words = key_of(self._text(k))
             is_unknown = owner is None and not (set(words) <= there or kind_called([*words, head]) is self.family)
-            asks = role in _CONTENT or self._mean(k, "towards")
+            asks = role in _CONTENT or self._mean(k, "towards") or self._mean(k, "aside")
             if owner == "!" or (asks and (owner in lost or is_unknown)):
                 found.append(k)
             elif found and (role == "," or role in _CONTENT):

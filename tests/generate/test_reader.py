@@ -90,7 +90,7 @@ def test_words_that_are_not_read_are_listed_and_never_as_something_that_lacks(te
 
 def test_what_was_asked_for_and_is_otherwise_is_listed():
     assert read_sentence("an office chair on nine castors").made().differences[0].startswith("number of casters")
-    assert read_sentence("a fridge with 3 drawers").made().differences == ("drawer: a fridge has none; it has door",)
+    assert read_sentence("a laptop with 3 drawers").made().differences == ("drawer: a laptop has none; it has screen",)
     assert read_sentence("a folding table, a round oak top").made().differences == ("top: not round",)
     assert "2 asked for" in "; ".join(read_sentence("a laptop with two screens").made().differences)
 
@@ -111,6 +111,46 @@ def test_a_row_is_measured_on_the_object(line, holds):
         listed = read_sentence(text).made().differences
         assert (listed == ()) is holds
         assert holds or "columns and rows are not 1 and" in listed[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "unread"),
+    [
+        ("a garden stapler", "garden"),  # the name of another kind
+        ("a stapler and a lamp", "stapler"),
+        ("a cabinet with a vertical drawer", "vertical"),
+        ("a cabinet with two doors, the handle up", "up"),
+        ("a cabinet with sixteen flurbs", "sixteen flurbs"),
+    ],
+)
+def test_a_word_that_no_field_took_is_listed(text, unread):
+    assert unread in " ".join(read_sentence(text).made().unread)
+
+
+@pytest.mark.parametrize(
+    ("text", "holds"),
+    [
+        ("a window with two sashes that open outward", True),
+        ("a window with two sashes that open inward", False),
+        ("a room door that swings inward", False),
+        ("a dishwasher whose door folds down", True),
+        ("a dishwasher whose door folds up", False),
+        ("a toolbox with a lid that opens up", True),
+        ("a cabinet with a drawer that slides out", True),
+        ("a cabinet with a knob on each door", True),
+        ("an oven with a knob on each rack", False),
+        ("an industrial stapler", False),
+        ("a tiny cabinet", False),
+    ],
+)
+def test_directions_extents_and_one_for_each_are_measured(text, holds):
+    assert read_sentence(text).made().is_complete is holds
+
+
+def test_the_look_of_the_whole_is_on_what_is_most_of_the_surface():
+    made = read_sentence("a brass telescope").made()
+    tube = next(part for part in made.blueprint.parts if part.name == "tube")
+    assert tube.appearance.materials[0].name == "brass"
 
 
 def test_a_slip_of_the_pen_is_repaired_with_a_word():
