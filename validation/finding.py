@@ -73,10 +73,6 @@ class Observation:
     severity: Severity
     """By what this check saw alone."""
     cause: Cause
-    message: str
-    """One or two sentences: what was found and what was expected."""
-    remedy: str
-    """What to do, with target values where they are known."""
     joint: str | None = None
     link: str | None = None
     pair: tuple[str, str] | None = None
@@ -89,6 +85,10 @@ class Observation:
     limit: float | None = None
     """What it was compared with, in `unit`."""
     unit: str | None = None
+    message: str
+    """One or two sentences: what was found and what was expected."""
+    remedy: str
+    """What to do, with target values where they are known."""
     line: int | None = None
     """Line of the URDF that it is about."""
     reproduction: str | None = None

@@ -10,7 +10,7 @@ from lxml import etree
 
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, Suppression
+from kinematify.validation.finding import Cause, CheckResult, Observation, Severity, Status, Suppression
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
@@ -30,11 +30,11 @@ ARM = """<robot name="arm">
 
 
 def found(check: str, severity: Severity = Severity.WARNING, **about: object) -> CheckResult:
-    """A check with one finding."""
+    """A check with one observation, which alone can become a finding."""
     engine = next(iter(CHECKS[check].engines), None)
     fields = {"check": check, "severity": severity, "cause": Cause.PHYSICS, "engine": engine, **about}
-    finding = Finding(message=f"Told by {check}.", remedy="Mend it.", **fields)  # type: ignore[arg-type]
-    return CheckResult(check=check, engine=engine, status=Status.FAIL, findings=(finding,))
+    seen = Observation(message=f"Told by {check}.", remedy="Mend it.", **fields)  # type: ignore[arg-type]
+    return CheckResult(check=check, engine=engine, status=Status.FAIL, findings=(seen,))
 
 
 def report_of(*results: CheckResult, folder: Path | None = None) -> ValidationReport:

@@ -115,9 +115,12 @@ class ValidationReport:
     def _findings_json(self) -> list[dict[str, Any]]:
         place = {id(finding): number for number, finding in enumerate(self.findings)}
         return [
-            _finding_json(finding)
-            | {"follows_from": None if finding.follows_from is None else place[id(finding.follows_from)]}
-            for finding in self.findings
+            json_values(
+                vars(item)
+                | {"severity": str(item.severity), "cause": str(item.cause)}
+                | {"follows_from": place.get(id(item.follows_from))}
+            )
+            for item in self.findings
         ]
 
 
@@ -133,35 +136,9 @@ def _check_json(check: CheckResult[Finding]) -> dict[str, Any]:
     }
 
 
-def _finding_json(finding: Finding) -> dict[str, Any]:
-    return {
-        "check": finding.check,
-        "severity": finding.severity.value,
-        "cause": finding.cause.value,
-        "joint": finding.joint,
-        "link": finding.link,
-        "pair": None if finding.pair is None else list(finding.pair),
-        "engine": finding.engine,
-        "q": json_values(finding.q),
-        "value": json_values(finding.value),
-        "limit": json_values(finding.limit),
-        "unit": finding.unit,
-        "message": finding.message,
-        "remedy": finding.remedy,
-        "line": finding.line,
-        "reproduction": finding.reproduction,
-        "suppressed": finding.suppressed,
-    }
-
-
 def _joint_json(joint: JointSummary) -> dict[str, Any]:
-    return {
-        "joint": joint.joint,
-        "type": joint.kind,
-        "declared_limits": json_values(joint.declared_limits),
-        "free_travel": json_values(joint.free_travel),
-        "best_alternative": json_values(joint.best_alternative),
-    }
+    facts = json_values(joint)
+    return {"joint": facts.pop("joint"), "type": facts.pop("kind"), **facts}
 
 
 def environment(settings: ValidationSettings, *, seconds: float, interrupted: bool) -> dict[str, Any]:
