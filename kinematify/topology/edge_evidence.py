@@ -31,7 +31,7 @@ class EdgeEvidence:
     axis: FloatArray | None
     """Unit direction of the best joint in the world frame, shape (3,); None where there is none. Read-only."""
     carriers: frozenset[int] = frozenset()
-    """Parts that bear both ends about one line, where one end turns past the other."""
+    """Bodies far larger than both ends that bear them about one line."""
 
     def __post_init__(self) -> None:
         if self.axis is not None:
@@ -45,7 +45,7 @@ def gather_evidence(
     """Evidence of every contact edge, keyed (a, b) with a < b; arguments as in `edges.edge_measurements`."""
     axes = {pair: bearing.lines[0].axis for pair, bearing in bearings.items() if bearing.lines}
     return {
-        pair: EdgeEvidence(quality=quality, axis=axes.get(pair), carriers=pins.passing.get(pair, frozenset()))
+        pair: EdgeEvidence(quality=quality, axis=axes.get(pair), carriers=pins.carriers.get(pair, frozenset()))
         for pair, quality in edge_qualities(graph, stats, bearings, pins).items()
     }
 

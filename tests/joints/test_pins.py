@@ -28,8 +28,10 @@ def test_a_carrier_bears_both_shafts_on_their_own_line(offset: float, lean: floa
     assert (0 in coaxial_carriers(lines, angle=2.0, distance=0.05).get((1, 2), ())) is found
 
 
-def test_hands_of_a_clock_pass_each_other() -> None:
+def test_the_case_bears_the_hands_of_a_clock_and_no_hand_bears_the_case() -> None:
     known = clock()
     _, graph, bearings = evidence(known)
-    pins = find_pins(known.assembly, graph, bearings, CONFIG)
-    assert (known.index["hand_0"], known.index["hand_1"]) in pins.passing
+    carriers = find_pins(known.assembly, graph, bearings, CONFIG).carriers
+    case, first, second = (known.index[name] for name in ("case", "hand_0", "hand_1"))
+    assert carriers[first, second] == {case}
+    assert not any(parts for edge, parts in carriers.items() if case in edge)

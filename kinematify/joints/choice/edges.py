@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
 EDGE_WEIGHTS = "edges.json"
-FORMAT = 1
+FORMAT = 2
 """Raised where the meaning of the file changes."""
 MEASUREMENTS = (
     "bearing", "clear_bearing", "log_bearing", "best_of_smaller", "best_of_larger", "log_gap", "bridge", "log_share",
     "log_wide_share", "of_largest_contact", "of_smaller_contacts", "of_larger_contacts", "twins", "bearing_of_twins",
-    "log_hull_ratio", "size", "inside", "journal", "passing", "adjacent_leaves", "skips_a_leaf",
+    "log_hull_ratio", "size", "inside", "journal",
 )  # fmt: skip
 """Columns of `edge_measurements`."""
 _NEAR, _WIDE = 1.0, 8.0  # tolerances of the contact within which area counts
@@ -158,10 +158,7 @@ def edge_measurements(
             np.log10(hulls[small] / hulls[large] + 1e-5),
             np.linalg.norm(bounds[small, 1] - bounds[small, 0], axis=1) / diagonal,
             np.minimum(inside, 1.0),
-            *(
-                [edge in held for edge in graph.by_pair]
-                for held in (pins.journals, pins.passing, pins.adjacent, pins.skipping)
-            ),
+            np.array([edge in pins.journals for edge in graph.by_pair]),
         ]
     ).astype(np.float64)
 
