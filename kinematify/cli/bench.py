@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, listed
+from kinematify.cli.options import examples, jobs_option, listed
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -102,7 +102,7 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
 @click.option(
     "--baseline", type=click.Path(path_type=Path), help="Earlier report (JSON); exit status 1 if one is worse."
 )
-@click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
+@jobs_option
 @click.option("--fresh", is_flag=True, help="Run everything again instead of resuming an earlier run.")
 @click.option(
     "--degrade",

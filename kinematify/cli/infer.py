@@ -19,6 +19,7 @@ from kinematify.cli.inferred import (
 )
 from kinematify.cli.options import (
     examples,
+    jobs_option,
     pieces_option,
     preview_option,
     scale_option,
@@ -107,6 +108,7 @@ def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[s
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
 @click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
+@jobs_option
 @vlm_option
 @click.option(
     "--answer",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples
+from kinematify.cli.options import examples, jobs_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.errors import ExitStatus
 
@@ -48,9 +48,7 @@ _SHOWN = 20
 @click.option("--baseline", metavar="NIGHT", help="Compare with this night, not the accepted one.")
 @click.option("--accept", "accepted", metavar="NIGHT", help="Make a night the baseline, and run nothing.")
 @click.option("--smoke", is_flag=True, help="Two objects of the built-in generator, in about half a minute.")
-@click.option(
-    "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
-)
+@jobs_option
 @json_option
 def command(*, accepted: str | None, json_to: str | None, **given: Any) -> int:
     """Infer every object of the benchmark, validate the models, and report what changed since earlier nights.

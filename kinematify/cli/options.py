@@ -6,12 +6,8 @@ import os
 import sys
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
-
-if TYPE_CHECKING:
-    pass
 
 
 def _package_dirs(context: click.Context, _parameter: click.Parameter, given: tuple[Path, ...]) -> tuple[Path, ...]:
@@ -51,6 +47,10 @@ def _arguments(_context: click.Context, _parameter: click.Parameter, given: tupl
 
 arguments_argument = click.argument("arguments", nargs=-1, metavar="[NAME:=VALUE]...", callback=_arguments)
 """What follows a xacro."""
+
+jobs_option = click.option(
+    "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
+)
 
 force_file_option = click.option("--force", "overwrite", is_flag=True, help="Replace the file of -o if it exists.")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.cli.options import examples, listed, package_dirs_option, sampling_seed_option, say
+from kinematify.cli.options import examples, jobs_option, listed, package_dirs_option, sampling_seed_option, say
 from kinematify.cli.progress import progress_reporter
 from kinematify.errors import DescriptionError, ExitStatus
 from kinematify.validation.finding import Severity
@@ -94,9 +94,7 @@ def _engines(context: click.Context, parameter: click.Parameter, words: str | No
     "--config", default="validation", show_default=True, metavar="NAME|FILE", help="Shipped or own thresholds."
 )
 @sampling_seed_option
-@click.option(
-    "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
-)
+@jobs_option
 @click.option(
     "--task",
     type=click.Choice(["pull"]),

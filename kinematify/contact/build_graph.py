@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, Pair
 from kinematify.geometry.surface import FACETED
+from kinematify.processes.forked import each
 from kinematify.robot.arrays import read_only
 from kinematify.robot.vectors import box_gaps
 
@@ -58,10 +59,10 @@ def build_contact_graph(
     band = config.band * assembly.diagonal
     bridges = find_bridges(assembly, surfaces, list(gaps), near=config.bridge_ratio, limit=band)
     bridges |= {pair: gap for pair, gap in within.items() if gap > tolerance}
-    raw = [
-        (pair, gap, *_contact_samples(surfaces, pair, max(band, 3 * gap), config.samples, seed))
-        for pair, gap in sorted({**gaps, **bridges}.items())
-    ]
+    raw = each(
+        lambda item: (*item, *_contact_samples(surfaces, item[0], max(band, 3 * item[1]), config.samples, seed)),
+        sorted({**gaps, **bridges}.items()),
+    )
     strengths = _strengths(raw, tolerance, config)
     edges = tuple(
         ContactEdge(

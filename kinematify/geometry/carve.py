@@ -377,8 +377,7 @@ class _Path:
         self._rotations, self._translations = sweep.motions(self._values)
         self._arc = 1.0 - np.cos(0.5 * np.diff(self._values).max()) if sweep.turns else 0.0
         self._across = np.concatenate([np.eye(3), sweep.axis[None], -np.eye(3), -sweep.axis[None]])
-        self._tracks: dict[tuple[_Polytope, bool], FloatArray] = {}
-        self._boxed: dict[_Polytope, tuple[FloatArray, FloatArray]] = {}
+        self._track, self._boxes = cache(self._new_track), cache(self._new_boxes)
 
     def near(self, moving: Sequence[_Polytope], resting: Sequence[_Polytope]) -> list[tuple[_Polytope, _Polytope]]:
         """Pairs whose boxes meet in some step, those of the first pieces last."""
@@ -394,13 +393,11 @@ class _Path:
             found += [(item, resting[index]) for index in close[meet].tolist()]
         return found[::-1]
 
-    def _boxes(self, piece: _Polytope) -> tuple[FloatArray, FloatArray]:
+    def _new_boxes(self, piece: _Polytope) -> tuple[FloatArray, FloatArray]:
         """Lower and upper corners of boxes around what moves, for every step, shape (n, 3) each; arcs included."""
-        if piece not in self._boxed:
-            track, rise = self._track(piece, backwards=False), self._rise(piece)
-            low, high = track.min(axis=1), track.max(axis=1)
-            self._boxed[piece] = np.minimum(low[:-1], low[1:]) - rise, np.maximum(high[:-1], high[1:]) + rise
-        return self._boxed[piece]
+        track, rise = self._track(piece, backwards=False), self._rise(piece)
+        low, high = track.min(axis=1), track.max(axis=1)
+        return np.minimum(low[:-1], low[1:]) - rise, np.maximum(high[:-1], high[1:]) + rise
 
     def within(self, steps: IntArray, free_end: Callable[[float], float]) -> IntArray:
         """Those of some steps that lie before the free ends [rad or m], or begin there; rest always does."""
@@ -460,17 +457,13 @@ class _Path:
         heights = (self._track(passing, backwards=backwards)[ends] @ normals.T).min(axis=1) - offsets
         return np.asarray(np.minimum(heights[:-1], heights[1:]).max(axis=1))
 
-    def _track(self, piece: _Polytope, *, backwards: bool) -> FloatArray:
+    def _new_track(self, piece: _Polytope, *, backwards: bool) -> FloatArray:
         """Vertices at the ends of all steps, (n + 1, V, 3), of what moves; backwards: of what rests as that sees it."""
-        key = (piece, backwards)
-        if key not in self._tracks:
-            if backwards:
-                shifted = piece.vertices[None] - self._translations[:, None]
-                self._tracks[key] = np.einsum("nji,nvj->nvi", self._rotations, shifted)
-            else:
-                turned = np.einsum("nij,vj->nvi", self._rotations, piece.vertices)
-                self._tracks[key] = turned + self._translations[:, None]
-        return self._tracks[key]
+        return np.asarray(
+            np.einsum("nji,nvj->nvi", self._rotations, piece.vertices[None] - self._translations[:, None])
+            if backwards
+            else np.einsum("nij,vj->nvi", self._rotations, piece.vertices) + self._translations[:, None]
+        )
 
     def _rise(self, piece: _Polytope) -> float:
         """Return how far the arcs of a piece rise over their chords [m]; by second differences where it is no turn."""

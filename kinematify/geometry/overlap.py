@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import fcl
@@ -29,7 +30,7 @@ class OverlapQueries:
     def __init__(self, scene: Scene) -> None:
         """Keep the scene; trees are built when a pair is first near each other."""
         self._scene = scene
-        self._objects: dict[tuple[int, int], fcl.CollisionObject] = {}
+        self._object = cache(self._new_object)
         self.queries = 0
         """Pairs in poses that FCL was asked about."""
 
@@ -105,11 +106,9 @@ class OverlapQueries:
         distance = fcl.distance(fixed, moving, fcl.DistanceRequest(), fcl.DistanceResult())
         return self._scene.unit * max(0.0, float(distance))
 
-    def _object(self, body: int, side: int) -> fcl.CollisionObject:
+    def _new_object(self, body: int, _side: int) -> fcl.CollisionObject:
         """FCL object of a body; the one of side 0 always stands at the origin."""
-        if (body, side) not in self._objects:
-            self._objects[body, side] = fcl.CollisionObject(self._scene.bodies[body].solid.tree, fcl.Transform())
-        return self._objects[body, side]
+        return fcl.CollisionObject(self._scene.bodies[body].solid.tree, fcl.Transform())
 
 
 def boxes_meet(first: Solid, second: Solid, T: FloatArray) -> BoolArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 from kinematify.geometry.overlap import OverlapQueries
@@ -44,7 +44,8 @@ class DepthAllowance:
     def __init__(self, scene: Scene, overlap: OverlapQueries) -> None:
         """Keep the scene; pairs are measured when first asked for."""
         self._scene, self._overlap = scene, overlap
-        self._depth: dict[Pair, float] = {}
+        self.at_rest = cache(self._at_rest)
+        """Depth of a pair at rest [m]."""
 
     @cached_property
     def pairs(self) -> Mapping[Pair, AtRest]:
@@ -52,12 +53,8 @@ class DepthAllowance:
         found = {pair: self._measure(pair) for pair in self._scene.pairs}
         return {pair: rest for pair, rest in found.items() if rest is not None}
 
-    def at_rest(self, pair: Pair) -> float:
-        """Depth of a pair at rest [m]."""
-        if pair not in self._depth:
-            T = relative(self._scene.at_rest[None], pair)
-            self._depth[pair] = float(self._overlap.depth(pair, T)[0])
-        return self._depth[pair]
+    def _at_rest(self, pair: Pair) -> float:
+        return float(self._overlap.depth(pair, relative(self._scene.at_rest[None], pair))[0])
 
     def gap(self, pair: Pair) -> float:
         """Distance of a pair at rest [m]; 0 where they collide or one is in the solid of the other."""

@@ -112,15 +112,11 @@ class Sweeper:
         values, poses = self._way(leader, sign)
         return self._within(leader, pair, values, relative(poses, pair))
 
-    def free_end(self, leader: int, end: float) -> float:
-        """Value on the way from rest to an end within the declared range up to which no pair meets [rad or m]."""
-        sign = float(np.sign(end - self._scene.travels[leader].rest))
-        values, poses = self._way(leader, sign)
-        for pair in self._scene.affected[leader]:
-            ahead = 1 + int(np.count_nonzero(sign * values < sign * end))
-            meeting = self._within(leader, pair, values, relative(poses, pair), ahead)
-            end = end if meeting is None else min(end, meeting.first, key=lambda value: sign * value)
-        return end
+    def free_end(self, leader: int, sign: float) -> float:
+        """Value within the declared range on one side of rest up to which no pair meets [rad or m]."""
+        meetings = [self.meeting(leader, pair, sign) for pair in self._scene.affected[leader]]
+        ends = [self._way(leader, sign)[0][-1], *(meeting.first for meeting in meetings if meeting)]
+        return sign * float(min(sign * np.array(ends)))
 
     def rows(self, leader: int, values: FloatArray) -> FloatArray:
         """Rows of leaders with one joint at `values` (n,) and the others at rest, shape (n, leaders)."""
@@ -183,19 +179,17 @@ class Sweeper:
         wanted = int(np.ceil(longest / (settings.step * scene.size)))
         return min(max(wanted, settings.samples_least), settings.samples_most)
 
-    def _within(self, leader: int, pair: Pair, values: FloatArray, T: FloatArray, ahead: int = 0) -> Meeting | None:
-        """Where and how deep a pair meets beyond what it is allowed in the first `ahead` or all rows of its way."""
-        rows = ahead or len(values)
-        if not boxes_meet(*self._overlap.solids(pair), T[:rows]).any():
+    def _within(self, leader: int, pair: Pair, values: FloatArray, T: FloatArray) -> Meeting | None:
+        """Where and how deep a pair meets beyond what it is allowed on its way."""
+        if not boxes_meet(*self._overlap.solids(pair), T).any():
             return None
-        hit = self._overlap.collide(pair, T[:rows])
-        growth, passed = self._growth(pair, T[:rows], hit)
+        hit = self._overlap.collide(pair, T)
+        growth, passed = self._growth(pair, T, hit)
         events = np.flatnonzero(growth > self._allowance.tolerance(pair))
-        if not len(events):  # what is on its way in at the last row may get too deep after it
-            deeper = rows < len(values) and growth[-1] > self._scene.settings.noise * self._scene.size
-            return self._within(leader, pair, values, T) if deeper else None
+        if not len(events):
+            return None
         begin = self._onset(leader, pair, values[: events[0] + 1], growth, hit), float(values[events[0]])
-        return _meeting(pair, begin, values[:rows], growth, passed, inside=True)
+        return _meeting(pair, begin, values, growth, passed, inside=True)
 
     def _outside(self, leader: int, pair: Pair, values: FloatArray, beyond: FloatArray) -> Meeting | None:
         """The same beyond the declared range, piece by piece, for the first place is enough."""

@@ -245,7 +245,7 @@ class _ExactSweeps:
         self._sweeper = Sweeper.of(self._scene)
         self._body_of = {name: index for index, body in enumerate(self._scene.bodies) for name in body.links}
         self._leader_of = {travel.joint: index for index, travel in enumerate(self._scene.travels)}
-        self._asked: dict[tuple[int, int, int, float], float] = {}
+        self._asked = cache(self._end)
         self.blocked: list[Blocked] = []
 
     def free_end(self, sweep: int, first: int, second: int, sign: float) -> float:
@@ -253,10 +253,7 @@ class _ExactSweeps:
         if not self._sweeps[sweep].leads:
             return sign * np.inf
         a, b = sorted(self._body_of[self._robot.links[link].name] for link in (first, second))
-        key = (self._leader_of[self._sweeps[sweep].joint], a, b, sign)
-        if key not in self._asked:
-            self._asked[key] = self._end(*key)
-        return self._asked[key]
+        return self._asked(self._leader_of[self._sweeps[sweep].joint], a, b, sign)
 
     def _end(self, leader: int, first: int, second: int, sign: float) -> float:
         meeting = self._sweeper.meeting(leader, (first, second), sign)

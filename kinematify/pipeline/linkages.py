@@ -282,9 +282,9 @@ def _range(model: KinematicModel, linkage: Linkage, diagonal: float) -> tuple[fl
     )
     settings = load_settings().geometry
     scene = read_scene(replace(robot, joints=joints), settings, visible_shapes)
-    leader, travel = next(item for item in enumerate(scene.travels) if item[1].joint == linkage.driver)
+    leader = [travel.joint for travel in scene.travels].index(linkage.driver or "")
     sweeper = Sweeper.of(scene)
-    free = sweeper.free_end(leader, travel.lower), sweeper.free_end(leader, travel.upper)
+    free = sweeper.free_end(leader, -1.0), sweeper.free_end(leader, 1.0)
     if free[1] - free[0] < _LEAST:  # its parts are in each other as they are: the motion cannot be judged
         return max(low, float(at[0])), min(high, float(at[-1]))
     return free

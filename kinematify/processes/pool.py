@@ -61,22 +61,6 @@ class Message:
     content: Any
 
 
-class Worker(Protocol):
-    """Does one task at a time; a task that ends it, hangs or leaks takes down nothing else."""
-
-    def submit(self, call: Callable[[], Any], timeout: float) -> None:
-        """Begin a picklable task that is stopped after `timeout` seconds, with all that it has started."""
-
-    def result(self) -> tuple[Any, bool]:
-        """Return the result of the task, its `TaskFailure` or a `Message`, and whether the worker can take another one.
-
-        To be called when `Executor.wait` has named the worker.
-        """
-
-    def stop(self) -> None:
-        """End it now, with all that it has started."""
-
-
 class Executor(Protocol):
     """Starts workers."""
 
@@ -84,8 +68,8 @@ class Executor(Protocol):
     def capacity(self) -> int:
         """Workers that can run at a time at present, at least 1."""
 
-    def start(self) -> Worker:
-        """Return a new worker."""
+    def start(self) -> Any:
+        """Return a new worker, as `WorkerProcess` is one."""
 
     def wait(self, workers: Collection[Any]) -> list[Any]:
         """Return those of the busy workers that have an answer, have died or whose time is up, at least one."""
@@ -111,7 +95,7 @@ def run_tasks(
     """
     upcoming, deaths = iter(tasks), Counter[str]()
     again: deque[WorkItem[_Result]] = deque()
-    active: dict[Worker, tuple[WorkItem[_Result], int]] = {}  # its task, and how many it has taken with it
+    active: dict[Any, tuple[WorkItem[_Result], int]] = {}  # its task, and how many it has taken with it
     try:
         while True:
             while len(active) < executor.capacity and (task := again.popleft() if again else next(upcoming, None)):
@@ -150,17 +134,25 @@ def run_tasks(
 class Processes:
     """The executor of this machine: workers with bounded memory that take one task after the other."""
 
-    def __init__(self, workers: int, *, preload: Sequence[str] = (), memory: int | None = None) -> None:
+    def __init__(
+        self,
+        workers: int,
+        *,
+        preload: Sequence[str] = (),
+        memory: int | None = None,
+        context: ForkContext | None = None,
+    ) -> None:
         """Start the server that processes are forked from: heavy imports are paid once, one thread per library.
 
         Args:
             workers: Processes at a time.
             preload: Modules that are imported once for all of them.
             memory: Address space of each [bytes]; what needs more fails with a `MemoryError`.
+            context: What they are forked from in place of a server.
         """
         self.capacity = workers
         self._memory = memory
-        self._context = ensure_server([__name__, *preload])
+        self._context = context or ensure_server([__name__, *preload])
 
     def start(self) -> WorkerProcess:
         """Return a new process."""
@@ -239,6 +231,11 @@ class WorkerProcess:
 
 _CALLERS: list[Connection] = []
 """Channels of this worker and of those that it was forked from; the last is its own."""
+
+
+def in_worker() -> bool:
+    """True in a worker: the pool that it is of keeps the cores busy."""
+    return bool(_CALLERS)
 
 
 def send(message: Any) -> None:

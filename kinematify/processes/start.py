@@ -54,12 +54,13 @@ def use_server(preload: Iterable[str], variables: Mapping[str, str] = ONE_THREAD
 
 def worker_context() -> ForkContext | ForkServerContext:
     """Return what starts processes: the server once it is used, else this process while its threads are Python's."""
-    if _Server.wanted or not _only_threads_of_python():
+    if _Server.wanted or not only_threads_of_python():
         return multiprocessing.get_context("forkserver")
     return multiprocessing.get_context("fork")
 
 
-def _only_threads_of_python() -> bool:
+def only_threads_of_python() -> bool:
+    """True if no library has started threads in this process."""
     try:
         return sum(1 for _ in Path("/proc/self/task").iterdir()) == threading.active_count()
     except OSError:

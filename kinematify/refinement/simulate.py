@@ -9,12 +9,14 @@ not repeated, so that a candidate costs only the sweep of its own joint.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.geometry.scene import Scene, SceneBody
 from kinematify.geometry.solid import Solid
+from kinematify.processes.forked import each
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
 from kinematify.robot.vectors import as_one
@@ -53,54 +55,6 @@ class WorldScene(Scene):
             motions = _motions_about(joint, self.lines[joint.name], values[:, column[joint.name]])
             poses[:, group] = poses[:, above] @ motions
         return np.ascontiguousarray(poses[:, [body.group for body in self.bodies]])
-
-
-class PartsWorld:
-    """The parts of one assembly, from which scenes are made; solids are built when first asked for."""
-
-    def __init__(self, model: KinematicModel, settings: GeometrySettings) -> None:
-        """Keep the collision geometry of a model; all plans of the same assembly share it.
-
-        Args:
-            model: Any plan of the assembly.
-            settings: Of the checks by geometry.
-        """
-        self.settings = settings
-        self._parts = {link.name: link.collision_parts or (link.visual,) for link in model.links}
-        self._visuals = {link.name: link.visual for link in model.links}
-        self._unit = _UNIT_SHARE * max(part.diagonal for parts in self._parts.values() for part in parts)
-        self._solids: dict[tuple[str, ...], Solid] = {}
-
-    def scene(self, model: KinematicModel) -> WorldScene:
-        """A plan as the checks see it."""
-        robot = _in_world_frame(model, self._visuals)
-        groups = rigid_groups(robot)
-        origins = {link.name: link.T_world_link[:3, 3] for link in model.links}
-        return WorldScene(
-            model=robot,
-            mechanism=LeaderMechanism(robot=robot),
-            bodies=tuple(
-                SceneBody(
-                    name=group.links[0], links=group.links, group=index, solid=self._solid(group.links), shapes=()
-                )
-                for index, group in enumerate(groups)
-            ),
-            settings=self.settings,
-            unit=self._unit,
-            lines={joint.name: origins[joint.child] for joint in model.joints},
-        )
-
-    def _solid(self, links: tuple[str, ...]) -> Solid:
-        key = tuple(sorted(links))
-        if key not in self._solids:
-            parts = [part for link in key for part in self._parts[link]]
-            self._solids[key] = Solid(
-                *as_one((part.vertices, part.faces) for part in parts),
-                unit=self._unit,
-                hole=self.settings.hole,
-                points=self.settings.points,
-            )
-        return self._solids[key]
 
 
 def _in_world_frame(model: KinematicModel, visuals: Mapping[str, Part]) -> Robot:
@@ -154,38 +108,73 @@ class Simulator:
             model: Any plan of the assembly.
             settings: Of the checks by geometry.
         """
-        self._world = PartsWorld(model, settings)
-        self._sweeps: dict[tuple[object, ...], JointSweep] = {}
+        self._settings = settings
+        self._parts = {link.name: link.collision_parts or (link.visual,) for link in model.links}
+        self._visuals = {link.name: link.visual for link in model.links}
+        self._unit = _UNIT_SHARE * max(part.diagonal for parts in self._parts.values() for part in parts)
+        self._solid = cache(self._new_solid)
+        self._sweeps: dict[tuple[tuple[object, ...], int], JointSweep] = {}
 
     def judge(self, model: KinematicModel, child: str | None = None) -> MotionVerdict:
         """Judge a whole plan, or the joint above one part by its motion alone; a fixed joint has nothing to say."""
-        look = GeometryContext(self._world.scene(model))
+        look = GeometryContext(self._scene(model))
         found: list[Observation] = []
         if child is None:
             found = _findings(checks_of("KV30"), look)
+        travels = [
+            (leader, travel.joint)
+            for leader, travel in enumerate(look.scene.travels)
+            if child in (None, model.robot.joint_by_name[travel.joint].child)
+        ]
+        # Another joint may have become fixed or free: the same motion under another number.
+        keys = [(_key(model, name), leader) for leader, name in travels]
+        new = [key for key in keys if key not in self._sweeps]
+        self._sweeps |= zip(new, each(lambda key: look.sweeper.sweep(key[1]), new), strict=True)
         summaries: list[JointSummary] = []
-        for leader, travel in enumerate(look.scene.travels):
-            if child in (None, model.robot.joint_by_name[travel.joint].child):
-                own, summary = self._joint(look, model, leader, travel.joint)
-                found += own
-                summaries.append(summary)
+        for (_, name), key in zip(travels, keys, strict=True):
+            sweep = self._sweeps[key]
+            found += _findings(checks_of("KV31", "KV32"), JointMotion(look=look, sweep=sweep))
+            joint = model.robot.joint_by_name[name]
+            summaries.append(
+                JointSummary(
+                    joint=name,
+                    kind=joint.kind.value,
+                    declared_limits=(joint.lower, joint.upper),
+                    free_travel=sweep.free,
+                )
+            )
         return MotionVerdict(findings=tuple(found), joints=tuple(summaries))
 
-    def _joint(
-        self, look: GeometryContext, model: KinematicModel, leader: int, name: str
-    ) -> tuple[list[Observation], JointSummary]:
-        key = _key(model, name)
-        if key not in self._sweeps:
-            self._sweeps[key] = look.sweeper.sweep(leader)
-        sweep = self._sweeps[key]
-        if sweep.leader != leader:  # another joint became fixed or free: the same motion under another number
-            sweep = self._sweeps[key] = look.sweeper.sweep(leader)
-        found = _findings(checks_of("KV31", "KV32"), JointMotion(look=look, sweep=sweep))
-        joint = next(item for item in model.joints if item.name == name)
-        summary = JointSummary(
-            joint=name, kind=joint.kind.value, declared_limits=(joint.lower, joint.upper), free_travel=sweep.free
+    def _scene(self, model: KinematicModel) -> WorldScene:
+        """A plan as the checks see it."""
+        robot = _in_world_frame(model, self._visuals)
+        groups = rigid_groups(robot)
+        origins = {link.name: link.T_world_link[:3, 3] for link in model.links}
+        return WorldScene(
+            model=robot,
+            mechanism=LeaderMechanism(robot=robot),
+            bodies=tuple(
+                SceneBody(
+                    name=group.links[0],
+                    links=group.links,
+                    group=index,
+                    solid=self._solid(tuple(sorted(group.links))),
+                    shapes=(),
+                )
+                for index, group in enumerate(groups)
+            ),
+            settings=self._settings,
+            unit=self._unit,
+            lines={joint.name: origins[joint.child] for joint in model.joints},
         )
-        return found, summary
+
+    def _new_solid(self, links: tuple[str, ...]) -> Solid:
+        return Solid(
+            *as_one((part.vertices, part.faces) for link in links for part in self._parts[link]),
+            unit=self._unit,
+            hole=self._settings.hole,
+            points=self._settings.points,
+        )
 
 
 def _findings(checks: Iterable[Check], context: object) -> list[Observation]:
@@ -199,7 +188,7 @@ def _findings(checks: Iterable[Check], context: object) -> list[Observation]:
 
 def _key(model: KinematicModel, name: str) -> tuple[object, ...]:
     """Return the key of the sweep of a joint: its line and range, and which bodies the tree moves against which."""
-    joint = next(item for item in model.joints if item.name == name)
+    joint = model.robot.joint_by_name[name]
     tree = tuple(sorted((item.child, item.parent, item.kind.value == "fixed") for item in model.joints))
     origin = model.link_by_name[joint.child].T_world_link[:3, 3]
     line = joint.axis.tobytes(), origin.tobytes()

@@ -16,6 +16,7 @@ from kinematify.grouping.groups import Grouping, group_pieces, read_groups
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline.infer_assembly import infer as infer_assembly
 from kinematify.pipeline.record import write_inference_files
+from kinematify.processes.forked import using_processes
 from kinematify.processes.lock import writing
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.loop import repaired
@@ -53,6 +54,7 @@ def infer(
     hints: Sequence[str] = (),
     config: str | Path | Config = "default",
     seed: int | None = None,
+    jobs: int | None = None,
     vlm: str = "off",
     answer: str | Path | None = None,
     overwrite: bool = False,
@@ -81,6 +83,7 @@ def infer(
         hints: What is known of joints, as it is typed behind ``--hint``.
         config: All stages: a shipped name, a file or the configuration; its seed makes the answer reproducible.
         seed: Of everything random, instead of the configuration's.
+        jobs: Processes at a time; as many as there are cores if absent. The answer is the same for any number.
         vlm: Vision-language model that is asked which pieces are one part: ``off``, ``auto`` or its address.
         answer: The same, as a person or a chat answered `kinematify question`.
         overwrite: Replace `out` if it is a model folder.
@@ -93,6 +96,7 @@ def infer(
         InputError: `base`, a mass or a hint names no part or cannot be read; both `groups` and `answer` are given.
         AssemblyError: The file or folder cannot become an assembly.
         OutputError: `out` exists and must not be replaced, or cannot be written.
+        EnvironmentFault: A process died or failed.
     """
     chosen, folder = load_config(config, seed=seed), None if out is None else Path(out)
     show, share = progress or (lambda stage, done: None), 1.0 if folder is None else _INFERRED
@@ -106,7 +110,7 @@ def infer(
         import torch  # noqa: PLC0415 - of the paper alone
 
         torch.set_num_threads(1)
-    with nullcontext() if folder is None else writing(folder):
+    with using_processes(jobs), nullcontext() if folder is None else writing(folder):
         if folder is not None and validation:
             start_validation()
         if isinstance(assembly, str | Path):

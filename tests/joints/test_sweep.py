@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box
-from kinematify.joints.features.motion_test import moving_points, sweep_slides, sweep_turns
+from kinematify.joints.features.motion_test import moving_points, slide_paths, turn_paths
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 from tests.objects import BUILDERS
@@ -29,7 +29,8 @@ def test_a_slide_stops_at_the_wall(distance: float) -> None:
     scene = scene_of(wall_in_front(distance), "cube")
     points = moving_points(scene.cache, scene.child, SWEEP)
     axes = np.array([[1.0, 0.0, 0.0]])
-    free = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=1.5, config=SWEEP).free(SWEEP.share)[0]
+    paths = slide_paths(scene.cache, points, axes, limit=1.5, config=SWEEP)
+    free = paths.against((scene.parent,)).free(SWEEP.share)[0]
     assert free[0] == pytest.approx(distance, abs=0.01)
     assert free[1] == 1.5
 
@@ -48,9 +49,7 @@ def test_a_door_opens_outwards_and_not_inwards() -> None:
     scene = scene_of(known, known.joints[0].child)
     joint = known.joints[0]
     points = moving_points(scene.cache, scene.child, SWEEP)
-    sweep = sweep_turns(
-        scene.cache, points, joint.axis[None], joint.pivot[None], (scene.parent,), limit=np.pi / 2, config=SWEEP
-    )
-    outwards, inwards = sweep.free(SWEEP.share)[0]
+    paths = turn_paths(scene.cache, points, joint.axis[None], joint.pivot[None], limit=np.pi / 2, config=SWEEP)
+    outwards, inwards = paths.against((scene.parent,)).free(SWEEP.share)[0]
     assert outwards > np.radians(80.0)
     assert inwards < np.radians(10.0)

@@ -10,6 +10,7 @@ feasibility.md section 4 measured why the paper's own pool and ranking (`paper.c
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,6 +30,7 @@ from kinematify.joints.bearings.scores import (
     scored_lines,
     surface_support,
 )
+from kinematify.processes.forked import each
 from kinematify.robot.arrays import read_only
 from kinematify.robot.vectors import crossed, lengths_of
 
@@ -62,13 +64,10 @@ def fit_bearings(
     Returns:
         One entry per edge, keyed like `ContactGraph.by_pair`.
     """
-    sides, bearings = {}, {}
-    for edge in graph.edges:
-        pair = edge.a, edge.b
-        own = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
-        sides[pair] = contact_sides(surfaces, edge, diagonal=assembly.diagonal, config=own)
-        found = _fitted(surfaces, edge, sides[pair], diagonal=assembly.diagonal, config=own, seed=seed)
-        bearings[pair] = found if own is config else _sharpened(found, sides[pair], assembly.diagonal, config)
+    work = partial(_fit_sides, surfaces, diagonal=assembly.diagonal, config=config, seed=seed)
+    fitted = dict(zip(graph.by_pair, each(work, graph.edges), strict=True))
+    bearings = {pair: bearing for pair, (_, bearing) in fitted.items()}
+    sides = {pair: found for pair, (found, _) in fitted.items()}
     return shared_by_twins(bearings, sides, surfaces, graph, diagonal=assembly.diagonal, config=config)
 
 
@@ -76,10 +75,16 @@ def fit_edge(
     surfaces: Sequence[PartSurface], edge: ContactEdge, *, diagonal: float, config: BearingConfig, seed: int
 ) -> EdgeBearing:
     """Propose, score and refine the lines of one contact edge; `diagonal` is that of the assembly [m]."""
+    return _fit_sides(surfaces, edge, diagonal=diagonal, config=config, seed=seed)[1]
+
+
+def _fit_sides(
+    surfaces: Sequence[PartSurface], edge: ContactEdge, *, diagonal: float, config: BearingConfig, seed: int
+) -> tuple[Sides, EdgeBearing]:
     own = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
     sides = contact_sides(surfaces, edge, diagonal=diagonal, config=own)
     found = _fitted(surfaces, edge, sides, diagonal=diagonal, config=own, seed=seed)
-    return found if own is config else _sharpened(found, sides, diagonal, config)
+    return sides, found if own is config else _sharpened(found, sides, diagonal, config)
 
 
 def _sharpened(found: EdgeBearing, sides: Sides, diagonal: float, config: BearingConfig) -> EdgeBearing:

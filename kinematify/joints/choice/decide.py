@@ -15,6 +15,7 @@ from kinematify.joints.features.columns import features_of
 from kinematify.joints.features.edge_scene import joint_scene, part_frames
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
+from kinematify.processes.forked import each
 from kinematify.robot.exact_faces import joined_faces
 from kinematify.robot.vectors import lengths_of
 
@@ -57,20 +58,24 @@ def estimate_joints(
     """
     cache = PartCache(assembly, graph, samples=config.samples, seed=seed)
     frames = part_frames(cache, tree, config)
-    found = {
-        edge: edge_features(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
-        for edge in tree.edges()
-    }
-    judged = {edge: judge(features, config.confidence) for edge, features in found.items()}
-    for group in alike_edges(graph, tree):
-        alike = [judged[edge] for edge in group]
-        likely = agreed([item.hypotheses.kinds for item in alike], [item.prior for item in alike])
-        fixed = float(np.mean([item.fixed for item in alike]))
-        judged |= {
-            edge: replace(judged[edge], prior=given, fixed=fixed) for edge, given in zip(group, likely, strict=True)
-        }
-    estimates = (_estimate(found[edge], judged[edge], config=config) for edge in tree.edges())
-    return tuple(with_exact_lines(assembly, estimate) for estimate in estimates)
+
+    def joints_of(group: Sequence[tuple[int, int]]) -> list[JointEstimate]:
+        found = [
+            edge_features(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
+            for edge in group
+        ]
+        judged = [judge(features, config.confidence) for features in found]
+        if len(group) > 1:
+            likely = agreed([item.hypotheses.kinds for item in judged], [item.prior for item in judged])
+            fixed = float(np.mean([item.fixed for item in judged]))
+            judged = [replace(item, prior=given, fixed=fixed) for item, given in zip(judged, likely, strict=True)]
+        return [with_exact_lines(assembly, _estimate(*pair, config=config)) for pair in zip(found, judged, strict=True)]
+
+    groups = alike_edges(graph, tree)
+    together = {edge for group in groups for edge in group}
+    groups += [[edge] for edge in tree.edges() if edge not in together]
+    estimates = {(joint.parent, joint.child): joint for joints in each(joints_of, groups) for joint in joints}
+    return tuple(estimates[edge] for edge in tree.edges())
 
 
 def _estimate(features: Features, judged: Posterior, *, config: JointsConfig) -> JointEstimate:

@@ -8,18 +8,19 @@ of those kinds).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, turn_sign
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.motion_test import Sweep, moving_points, slide_clearance, sweep_slides, sweep_turns
+from kinematify.joints.features.motion_test import Sweep, moving_points, slide_clearance, slide_paths, turn_paths
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.config import JointsConfig
     from kinematify.joints.features.edge_scene import JointScene
@@ -40,22 +41,18 @@ Ways = tuple[LimitEnd, LimitEnd]
 """Along an axis and against it."""
 
 
-def free_ways(
-    scene: JointScene, sweep: Callable[[Sequence[int]], Sweep], obstacles: Sequence[int], share: float
-) -> Ways:
+def free_ways(scene: JointScene, obstacles: Sequence[int], swept: Sequence[Sweep], share: float) -> Ways:
     """Return how far one joint goes both ways until more than a share of the part has met others, and which it meets.
 
     Args:
         scene: The pair.
-        sweep: The motion against some parts.
         obstacles: All parts that may be in the way.
+        swept: The motion against each of them.
         share: Of the points that are swept.
     """
-    whole = sweep(obstacles)
-    each = [sweep((part,)) for part in obstacles] if len(obstacles) > 1 else [whole]
-    ways = []
+    whole, ways = reduce(Sweep.joined, swept), []
     for side, motion in enumerate(whole.free(share)[0]):
-        met = obstacles[int(np.argmax([one.crossed(motion)[0, side] for one in each]))]
+        met = obstacles[int(np.argmax([one.crossed(motion)[0, side] for one in swept]))]
         stop = f"contact with {scene.cache.assembly.parts[met].name}"
         ways.append(LimitEnd(float(motion), stop if motion < whole.limit else "none found"))
     return ways[0], ways[1]
@@ -136,11 +133,8 @@ def _free_turn(
 ) -> Ways:
     """Free angle towards + and -."""
     points = moving_points(scene.cache, scene.child, config.sweep)
-
-    def swept(parts: Sequence[int]) -> Sweep:
-        return sweep_turns(scene.cache, points, axis[None], pivot[None], parts, limit=np.pi, config=config.sweep)
-
-    return free_ways(scene, swept, obstacles, config.sweep.share)
+    paths = turn_paths(scene.cache, points, axis[None], pivot[None], limit=np.pi, config=config.sweep)
+    return free_ways(scene, obstacles, [paths.against((part,)) for part in obstacles], config.sweep.share)
 
 
 def _usual(degrees: float) -> LimitEnd:
@@ -305,11 +299,9 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
     points = moving_points(scene.cache, scene.child, config.sweep)
     # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
     obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
-
-    def swept(parts: Sequence[int]) -> Sweep:
-        return sweep_slides(scene.cache, points, axis[None], parts, limit=scene.diagonal, config=config.sweep)
-
-    ways = free_ways(scene, swept, obstacles, config.sweep.share)
+    paths = slide_paths(scene.cache, points, axis[None], limit=scene.diagonal, config=config.sweep)
+    swept = [paths.against((part,)) for part in obstacles]
+    ways = free_ways(scene, obstacles, swept, config.sweep.share)
     free = np.array([way.motion for way in ways])
     length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
     runs = _in_linkage(scene) or _is_runner(scene, axis, free, length, config)
@@ -324,7 +316,7 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
         ahead, back = guided
     elif (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.has_bearing and _outwards(scene, way) < 0.0):
         # It overlaps the pocket that it is in: a few of its points say nothing of the floor.
-        floor = free_ways(scene, swept, obstacles, config.limits.pressed_share)[0 if sign > 0 else 1]
+        floor = free_ways(scene, obstacles, swept, config.limits.pressed_share)[0 if sign > 0 else 1]
         ahead, back = min(floor, _press(scene, way, length, config)), AS_GIVEN
     else:
         ahead, back = _ends(scene, way, ways, length, config)

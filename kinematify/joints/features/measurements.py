@@ -798,23 +798,8 @@ def measure_groups(scene: JointScene, hypotheses: Hypotheses) -> dict[str, Value
     return {name: group(measured) for name, group in GROUPS.items()}
 
 
-GROUPS: dict[str, Callable[[MeasuredHypotheses], Values]] = {
-    "motion": motion,
-    "contact_motion": contact_motion,
-    "sliding_surface": sliding_surface,
-    "bearing": bearing,
-    "place": place,
-    "contact_place": contact_place,
-    "child_shape": child_shape,
-    "where": where,
-    "symmetry": symmetry,
-    "axle": axle,
-    "standing_in": standing_in,
-    "mirror": mirror,
-    "hollow": hollow,
-    "around": around,
-    "gravity": gravity,
-    "handle": handle,
-    "opening": opening,
-    "neighbours": neighbours,
-}
+_MEASURING: tuple[Callable[[MeasuredHypotheses], Values], ...] = (
+    motion, contact_motion, sliding_surface, bearing, place, contact_place, child_shape, where, symmetry, axle,
+    standing_in, mirror, hollow, around, gravity, handle, opening, neighbours,
+)  # fmt: skip
+GROUPS = {group.__name__: group for group in _MEASURING}

@@ -119,36 +119,13 @@ def turn_paths(
     return Paths(cache=cache, ends=ends, motions=motions, counted=use.astype(np.float64), limit=limit)
 
 
-def sweep_turns(
-    cache: PartCache,
-    points: FloatArray,
-    axes: FloatArray,
-    pivots: FloatArray,
-    obstacles: Sequence[int],
-    *,
-    limit: float,
-    config: SweepConfig,
-) -> Sweep:
-    """Turn points about several lines, both ways, among the parts that are obstacles; arguments as in `turn_paths`."""
-    return turn_paths(cache, points, axes, pivots, limit=limit, config=config).against(obstacles)
-
-
-def sweep_slides(
-    cache: PartCache,
-    points: FloatArray,
-    axes: FloatArray,
-    obstacles: Sequence[int],
-    *,
-    limit: float,
-    config: SweepConfig,
-) -> Sweep:
-    """Slide points along several directions, both ways, up to `limit` [m]; arguments as in `sweep_turns`."""
+def slide_paths(cache: PartCache, points: FloatArray, axes: FloatArray, *, limit: float, config: SweepConfig) -> Paths:
+    """Ways of points that slide along several directions up to `limit` [m]; arguments as in `turn_paths`."""
     start = min(config.grace * cache.diagonal, 0.5 * limit)
     counted = np.ones((len(axes), len(points)))
     motions = np.broadcast_to(np.array([[start], [limit]]), (2, counted.size))
     resting, way = np.tile(points, (len(axes), 1)), motions[..., None] * np.repeat(axes, len(points), axis=0)
-    paths = Paths(cache=cache, ends=(resting + way, resting - way), motions=motions, counted=counted, limit=limit)
-    return paths.against(obstacles)
+    return Paths(cache=cache, ends=(resting + way, resting - way), motions=motions, counted=counted, limit=limit)
 
 
 def _fractions(cache: PartCache, ends: FloatArray, obstacles: Sequence[int]) -> FloatArray:
@@ -209,8 +186,8 @@ def contact_clearance(
     if points is None:
         return None
     limit = np.radians(config.clearance.turn_deg)
-    turned = sweep_turns(scene.cache, points, axes, pivots, (scene.parent,), limit=limit, config=_strict(config))
-    free = turned.free(_share(scene, config)).max(axis=1)
+    turned = turn_paths(scene.cache, points, axes, pivots, limit=limit, config=_strict(config))
+    free = turned.against((scene.parent,)).free(_share(scene, config)).max(axis=1)
     radii = np.linalg.norm(np.cross(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
     arcs = np.where(free >= limit, np.inf, free * radii)
     return Clearance(turn=float(arcs.max()), slide=float(_slid(scene, points, direction, config).max()))
@@ -224,8 +201,8 @@ def slide_clearance(scene: JointScene, direction: FloatArray, config: JointsConf
 
 def _slid(scene: JointScene, points: FloatArray, direction: FloatArray, config: JointsConfig) -> FloatArray:
     reach = config.clearance.slide * scene.frame.diagonal
-    swept = sweep_slides(scene.cache, points, direction[None], (scene.parent,), limit=reach, config=_strict(config))
-    free = swept.free(_share(scene, config))[0]
+    slid = slide_paths(scene.cache, points, direction[None], limit=reach, config=_strict(config))
+    free = slid.against((scene.parent,)).free(_share(scene, config))[0]
     return np.where(free >= reach, np.inf, free)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.joints.features.edge_scene import is_cap
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.motion_test import moving_points, sweep_slides
+from kinematify.joints.features.motion_test import moving_points, slide_paths
 from kinematify.joints.features.ranking import Ranked, cue_sum
 
 if TYPE_CHECKING:
@@ -39,10 +39,9 @@ def rank_slides(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> R
     axes = lines.axes
     points = moving_points(scene.cache, scene.child, config.sweep)
     limit = config.slides.sweep * scene.diagonal
-    with_parent = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=limit, config=config.sweep)
-    everything = with_parent.joined(
-        sweep_slides(scene.cache, points, axes, scene.others, limit=limit, config=config.sweep)
-    )
+    paths = slide_paths(scene.cache, points, axes, limit=limit, config=config.sweep)
+    with_parent = paths.against((scene.parent,))
+    everything = with_parent.joined(paths.against(scene.others))
     cues = {
         **_motion_cues(scene, axes, with_parent, everything, config),
         **_shape_cues(scene, axes, with_parent, config),
@@ -89,7 +88,8 @@ def _small_way(scene: JointScene, points: FloatArray, axes: FloatArray, config: 
         return np.zeros(len(axes))
     strict = config.sweep.model_copy(update={"grace": 0.0})
     own = np.abs(axes @ scene.frame.axes.T) @ scene.frame.extents
-    swept = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=scene.frame.diagonal, config=strict)
+    paths = slide_paths(scene.cache, points, axes, limit=scene.frame.diagonal, config=strict)
+    swept = paths.against((scene.parent,))
     return np.asarray(scene.smallness * np.minimum(1.0, swept.free(config.sweep.share).max(axis=1) / own))
 
 

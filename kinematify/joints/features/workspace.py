@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from functools import cache, cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
@@ -16,7 +16,7 @@ from kinematify.joints.features.frames import body_axes
 from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from kinematify.assembly.part import Assembly
     from kinematify.contact.graph import ContactGraph
@@ -87,19 +87,17 @@ class PartCache:
         self.graph = graph
         self._samples = samples
         self._seed = seed
-        self._store: dict[tuple[str, int], Any] = {}
+        self.samples = cache(self._sampled)
+        """Area-uniform surface samples of a part."""
+        self._scene, self._tree, self._solid = cache(self._new_scene), cache(self._new_tree), cache(self._new_solid)
 
     @property
     def diagonal(self) -> float:
         """Diagonal of the assembly [m]; the unit of most tolerances."""
         return self.assembly.diagonal
 
-    def samples(self, part: int) -> SurfaceSamples:
-        """Area-uniform surface samples of a part."""
-        found: SurfaceSamples = self._once(
-            "samples", part, lambda: sample_surface(self.assembly.parts[part], self._samples, self._seed)
-        )
-        return found
+    def _sampled(self, part: int) -> SurfaceSamples:
+        return sample_surface(self.assembly.parts[part], self._samples, self._seed)
 
     @cached_property
     def upright_axes(self) -> FloatArray:
@@ -199,30 +197,18 @@ class PartCache:
             parent_normals=of_parent.normals[near_parent],
         )
 
-    def _scene(self, part: int) -> EmbreeScene:
-        def build() -> EmbreeScene:
-            mesh = self.assembly.parts[part]
-            scene = EmbreeScene()
-            TriangleMesh(scene, mesh.vertices[mesh.faces].astype(np.float32))
-            return scene
+    def _new_scene(self, part: int) -> EmbreeScene:
+        mesh, scene = self.assembly.parts[part], EmbreeScene()
+        TriangleMesh(scene, mesh.vertices[mesh.faces].astype(np.float32))
+        return scene
 
-        return self._once("scene", part, build)
-
-    def _tree(self, part: int) -> DistanceTree:
+    def _new_tree(self, part: int) -> DistanceTree:
         mesh = self.assembly.parts[part]
-        found: DistanceTree = self._once("tree", part, lambda: DistanceTree(mesh.vertices, mesh.faces))
-        return found
+        return DistanceTree(mesh.vertices, mesh.faces)
 
-    def _solid(self, part: int) -> WindingTree:
+    def _new_solid(self, part: int) -> WindingTree:
         mesh = self.assembly.parts[part]
-        found: WindingTree = self._once("solid", part, lambda: WindingTree(mesh.vertices, mesh.faces))
-        return found
-
-    def _once(self, kind: str, part: int, build: Callable[[], Any]) -> Any:
-        key = (kind, part)
-        if key not in self._store:
-            self._store[key] = build()
-        return self._store[key]
+        return WindingTree(mesh.vertices, mesh.faces)
 
 
 CHILD, PARENT, OTHER, CARRIED = range(4)
