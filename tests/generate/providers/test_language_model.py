@@ -147,6 +147,7 @@ def test_the_budget_ends_the_rounds(server, tmp_path):
         ("refusal", InputError, "I do not design such things"),
         ("[1, 2]", InputError, "no object"),
         ("[" * 100_000, InputError, "no JSON"),
+        ('{"request": {"kind": "cab', InputError, "no JSON"),
         ("odd", EnvironmentFault, "without a message"),
         (400, InputError, "refuses the request"),
         (402, InputError, "not enough credit"),
