@@ -539,8 +539,8 @@ def on_both_sides(made: Blueprint, names: Sequence[str]) -> bool:
 def goes_towards(made: Blueprint, joint: BlueprintJoint, side: str) -> bool:
     """Return True if what a joint carries goes to a side as it opens, or either way where it goes both."""
     low, high = _limits(joint)
-    if joint.kind is JointType.FIXED or not math.isfinite(low * high):
-        return joint.kind is not JointType.FIXED
+    if joint.kind is JointType.FIXED:
+        return False
     way = min(high, 0.5 * math.pi) if high > 0.0 else low
     shut = closed(made)
     part, there = (

@@ -299,7 +299,7 @@ class Sentence:
         self.ahead = {"count": 0} if found[0] == "W" and self._span(k + 1) else {}
         if self.ahead:
             self._take([k])
-        self.is_shown = self._text(k) == "with" and self._text(k + 1) in ("the", "its", "their")
+        self.is_shown = self._text(k, k + 2) in ("with the", "with its", "with their")
         self.fresh = False
 
     # ---- nouns -----------------------------------------------------------------------------------------------------
@@ -545,7 +545,10 @@ class Sentence:
             can, role = self.roles[j - 1] in "bR" and self._text(j - 1) not in ("is", "are"), self.roles[j]
             goes = self._text(j) == "open" and (can or (self.is_plural and not stands and far > 0))
             if role == "S" and not goes and (not can or self._mean(j, "state") == "0"):
-                share, stands = float(self._mean(j, "state")) if share is None else share, True
+                state, stands = float(self._mean(j, "state")), True
+                if share and not state:  # open and closed
+                    return found.end()
+                share = state if share is None else share
             elif role == "g" and not how:
                 share = float(self._mean(j, "degree"))
             elif role in "mMNHS":
@@ -597,7 +600,7 @@ class Sentence:
 
     def _place_side(self, found: Match) -> None:
         side = self._mean(found.start("side"), "side")
-        if self._text(found.start()) in ("to", "towards") and self.roles[found.start() - 1] in "mMaSv&q":
+        if self._text(found.start()) == "to" and self.roles[found.start() - 1] in "mMaSv&q":
             self._fact(found, towards=side)  # slides to the left
         elif self.is_hinged and self.subject.startswith(tuple(_OPPOSITE)):
             self._fact(found, hinge=side)  # the left one hinged on the left, the right one on the right
@@ -667,6 +670,7 @@ class Sentence:
             self._add("door", units, hinge=value)
         elif what in ("motion", "towards", "round"):
             self.moves.append((what, value, units))
+            self._take(units)
 
     # ---- layouts of fronts -----------------------------------------------------------------------------------------
 
@@ -761,8 +765,8 @@ class Sentence:
                 moves_so(joint, value) if what == "motion" else goes_towards(blueprint, joint, value)
                 for joint in joints
             )
-            if are_round(blueprint, [blueprint.parts[0].name]) if what == "round" else holds:
-                taken |= dict.fromkeys(units, "")
+            if not (are_round(blueprint, [blueprint.parts[0].name]) if what == "round" else holds):
+                taken |= dict.fromkeys(units, "!")
         for noun, facts in self.things.items():
             names = names_called(self.family, blueprint, noun)
             if noun in made.missing or not names:

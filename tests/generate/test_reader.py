@@ -67,7 +67,6 @@ def test_a_sentence_fills_a_request(text, expected):
 @pytest.mark.parametrize(
     ("text", "unread"),
     [
-        ("a laptop with a projector", ["a projector"]),
         ("a cabinet that sings", ["sings"]),
         ("a filing cabinet with four drawers, the second one from the top red", []),
         ("a filing cabinet with four drawers, the middle one red", ["the middle one red"]),
@@ -121,6 +120,8 @@ def test_a_row_is_measured_on_the_object(line, holds):
         ("a cabinet with a vertical drawer", "vertical"),
         ("a cabinet with two doors, the handle up", "up"),
         ("a cabinet with sixteen flurbs", "sixteen flurbs"),
+        ("a bar stool that swivels and goes up and down", "goes up and down"),
+        ("a safe whose door is open and closed", "closed"),
     ],
 )
 def test_a_word_that_no_field_took_is_listed(text, unread):
@@ -176,13 +177,11 @@ def test_sizes_toys_and_shares_of_parts_are_read_as_they_are_written():
         ("шкаф с двумя дверями", "not English"),
         ("word " * 300, "300 words"),
         ("a flying carpet", "No kind of object is called 'flying carpet'. The nearest are"),
-        ("a laptop cushion", "No kind of object is called 'laptop cushion'"),
         ("a cabinet with -3 drawers", "negative"),
         ("a cabinet with 10000000 doors", "less than or equal to"),
         ("a wardrobe, 0 m high", "greater than 0"),
         ("a four-door cabinet with three doors", "4 and 3 of 'door'"),
         ("a cabinet 80 cm wide, 1.2 m wide", "0.8 m and 1.2 m"),
-        ("a cabinet with two doors and three doors", "2 and 3 of 'door'"),
         ("a wardrobe without doors whose door is red", "no door"),
     ],
 )
