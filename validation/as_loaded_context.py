@@ -253,14 +253,25 @@ class AsLoadedContext:
         return next((item for item, (first, second) in sides if first != second), None)
 
     @cached_property
+    def closed(self) -> frozenset[str]:
+        """Joints that lead others along a curve in a file whose loops the engine closes, which no hand can do."""
+        curves = (joint.closure for joint in self.robot.joints if self.native)
+        return frozenset(curve.joint for curve in curves if curve is not None)
+
+    @cached_property
     def hands(self) -> tuple[VelocityProbe, ...]:
         """Every joint pushed to both ends of what is free, of its range where nothing is, the others held."""
         return tuple(
             self._by_hand(travel, end)
             for travel in self.travels
+            if travel.joint not in self.closed
             for end in self.free(travel) or (travel.lower, travel.upper)
             if abs(end - travel.rest) > self._nothing(travel)
         )
+
+    def free_without_contacts(self, run: VelocityProbe) -> bool:
+        """True if a push that fell short gets to the end where nothing touches."""
+        return run.without_contacts is not None and self.reaches_end(run, run.without_contacts)
 
     def moves_by_motor(self, run: VelocityProbe) -> bool:
         """True if a joint that a push did not bring to its end gets there as the file is loaded without flags.
@@ -269,7 +280,7 @@ class AsLoadedContext:
         """
         if self.flag is None:
             return False
-        if run.without_contacts is not None and self.reaches_end(run, run.without_contacts):
+        if self.free_without_contacts(run):
             return True
         target = run.push.target
         driven = drive(self.loaded, run.travel.joint, run.values, target, self.settings.seconds)
@@ -323,12 +334,6 @@ class AsLoadedContext:
             return None
         return Sweeper.of(read_scene(model, self.request.settings.geometry, visible_shapes, thin=True))
 
-    def _seen_end(self, travel: Travel, end: float) -> float:
-        """Value up to which what is visible does not block the way to an end [rad or m]."""
-        if self._surfaces is not None:
-            return self._surfaces.free_end(self.mechanism.travels.index(travel), end)
-        return float(np.clip(end, *self.request.free_travel[travel.joint]))
-
     def _by_hand(self, travel: Travel, end: float) -> VelocityProbe:
         joint = self.robot.joint_by_name[travel.joint]
         resistance = {"resistance": joint.friction or 0.0, "damping": joint.damping or 0.0}
@@ -339,7 +344,10 @@ class AsLoadedContext:
         )
         if self.reaches_end(run, pushed.farthest):
             return run
-        seen = self._seen_end(travel, end)
+        if self._surfaces is None:
+            seen = float(np.clip(end, *self.request.free_travel[travel.joint]))
+        else:
+            seen = self._surfaces.free_end(self.mechanism.travels.index(travel), end)
         run = replace(run, end=seen) if abs(seen - travel.rest) > self._nothing(travel) else replace(run, free=False)
         if self.reaches_end(run, pushed.farthest):
             return run
@@ -378,16 +386,11 @@ class AsLoadedContext:
         return tuple(
             self._press(travel, end, outwards, effort)
             for travel in self.travels
-            if travel.limited and (effort := self.robot.joint_by_name[travel.joint].effort or 0.0) > 0.0
-            for end, declared, outwards in zip(
-                (travel.lower, travel.upper), self._declared(travel), (-1.0, 1.0), strict=True
-            )
+            for joint in (self.robot.joint_by_name[travel.joint],)
+            if travel.limited and (effort := joint.effort or 0.0) > 0.0
+            for end, declared, outwards in ((travel.lower, joint.lower, -1.0), (travel.upper, joint.upper, 1.0))
             if end == declared
         )
-
-    def _declared(self, travel: Travel) -> tuple[float, float]:
-        joint = self.robot.joint_by_name[travel.joint]
-        return joint.lower, joint.upper
 
     def _press(self, travel: Travel, end: float, outwards: float, effort: float) -> VelocityProbe:
         inertia = sum(ratio**2 * self.inertias[name] for name, ratio in self.ratios(travel).items())

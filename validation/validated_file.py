@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 _OF_LIMITS = ("KV220", "KV801", "KV805")
 """Checks of limits, which a URDF has to state."""
-_OF_TEXT = ("KV104", "KV144")
-"""Checks of the URDF's text, which say nothing about a file of another format."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,8 +71,8 @@ class ValidatedFile:
         line = next((line for name in named if (line := self.lines.get(name))), None)
         if self.form is None:
             return replace(finding, line=finding.line or line)
-        if finding.check in _OF_TEXT or (finding.check in _OF_LIMITS and finding.joint in self.endless):
-            return None
+        if finding.check == "KV104" or (finding.check in _OF_LIMITS and finding.joint in self.endless):
+            return None  # KV104 is about the URDF's text
         if finding.check == "KV201" and self.form == "MJCF":
             return None  # MuJoCo compiles no body that moves without mass; links between joints of one body have none
         if finding.engine is None or (finding.engine == "mujoco" and self.native):

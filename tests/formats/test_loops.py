@@ -168,6 +168,67 @@ def test_validate_reports_a_loop_that_is_open_or_rigid(toolbox, change, said):
     assert not said_so if said is None else any(said in message for message in said_so)
 
 
+CRANK, ROCKER, COUPLER = 0.2, 0.12, math.hypot(0.3, 0.08)
+"""Links of a four-bar above a ground of 30 cm: the shortest one, the rocker, turns round and the crank swings."""
+
+
+def four_bar(folder: Path, reach: float) -> Path:
+    """Write one whose crank is declared to swing so far to both sides [rad]."""
+    links = "".join(
+        f"""<link name="{name}"><inertial><mass value="0.5"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0"
+        iyz="0"/></inertial><visual><origin xyz="{at}"/><geometry><box size="{size}"/></geometry></visual></link>"""
+        for name, size, at in (
+            ("ground", "0.4 0.02 0.02", "0.15 0 -0.02"),
+            ("crank", f"0.02 0.02 {CRANK}", f"0 0.03 {CRANK / 2}"),
+            ("rocker", f"0.02 0.02 {ROCKER}", f"0 0.03 {ROCKER / 2}"),
+            ("coupler", f"{COUPLER} 0.02 0.02", f"{COUPLER / 2} 0.06 0"),
+        )
+    )
+    joints = "".join(
+        f"""<joint name="{child}_joint" type="{kind}"><parent link="{parent}"/><child link="{child}"/><origin {at}/>
+        <axis xyz="0 1 0"/><limit lower="{-reach}" upper="{reach}" effort="10" velocity="1"/></joint>"""
+        for child, kind, parent, at in (
+            ("crank", "revolute", "ground", 'xyz="0 0 0"'),
+            ("rocker", "continuous", "ground", 'xyz="0.3 0 0"'),
+            ("coupler", "continuous", "crank", f'xyz="0 0 {CRANK}" rpy="0 {math.atan2(0.08, 0.3)} 0"'),
+        )
+    )
+    pin = f"""<loop_joint name="pin" type="spherical"><link1 link="rocker" xyz="0 0.06 {ROCKER}"/>
+    <link2 link="coupler" xyz="{COUPLER} 0.06 0"/></loop_joint>"""
+    path = folder / "four_bar.urdf"
+    path.write_text(f'<robot name="four_bar">{links}{joints}{pin}</robot>', encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("reach", "fits"), [(0.45, True), (0.6, False), (2.5, False)])
+def test_a_crank_that_its_loop_does_not_let_reach_its_range_is_found_and_mujoco_shows_it(tmp_path, reach, fits):
+    urdf = four_bar(tmp_path, reach)
+    found = [item for item in validate(urdf, selected=["KV230"], engines=()).findings if item.check == "KV230"]
+    assert [item.joint for item in found] == ([] if fits else ["crank_joint"])
+    export(urdf, "mjcf", tmp_path / "four_bar.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "four_bar.xml"))
+    model.opt.gravity[:] = 0.0
+    model.jnt_limited[:] = 0
+    data, crank, rocker = mujoco.MjData(model), model.joint("crank_joint").id, model.joint("rocker_joint").id
+    seen = []
+    for target in np.linspace(0.0, -math.pi, 4000):
+        data.qpos[rocker], data.qvel[rocker] = target, 0.0
+        mujoco.mj_step(model, data)
+        seen.append(data.qpos[crank])
+    end = -math.acos((0.09 + CRANK**2 - (COUPLER + ROCKER) ** 2) / (0.6 * CRANK)) + math.pi / 2
+    assert min(seen) == pytest.approx(end, abs=2e-3), "as far as coupler and rocker reach when they are in line"
+    assert (end <= -0.95 * reach) is fits
+    assert fits or f"from {end:.3f}"[:10] in found[0].message
+
+
+def test_no_hand_pushes_what_leads_a_loop_of_an_mjcf(tmp_path):
+    """A crank that MuJoCo holds in its loop got nowhere by a push that moved the rocker by a straight line."""
+    export(four_bar(tmp_path, 2.5), "mjcf", tmp_path / "four_bar.xml")
+    report = validate(tmp_path / "four_bar.xml", selected=["KV804"], engines=("mujoco",))
+    (check,) = [item for item in report.checks if item.check == "KV804" and item.engine == "mujoco"]
+    assert (check.measured["joints"], check.findings) == (0.0, ())
+
+
 def bar(name: str, start: tuple[float, float], end: tuple[float, float], height: float) -> dict[str, object]:
     """A flat bar between two pins."""
     middle = [0.5 * (a + b) for a, b in zip(start, end, strict=True)]

@@ -311,9 +311,10 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint is pushed from rest to both ends by as_loaded.force or as_loaded.torque on top
     of declared friction and damping, its followers with it, the others held, gravity off. It has to reach
     as_loaded.reach of what exact geometry, colliding and visible, leaves free of its range, of the whole range where
-    that is not known. Where another body ends the way, not a limit, as_loaded.touch_angle or as_loaded.touch_length
-    may be missing, half of the way at most: engines let bodies touch before they meet. What does not get there
-    without contacts either, or has no free way at all (KV31x), is a note; what gets over half of its way a warning.
+    that is not known. In an MJCF, what leads others along a curve is not pushed (KV230). Where another body ends the
+    way, not a limit, as_loaded.touch_angle or as_loaded.touch_length may be missing, half of the way at most: engines
+    let bodies touch before they meet. What does not get there without contacts either, or has no free way at all
+    (KV31x), is a note; what gets over half of its way a warning.
     Plain `loadURDF` of PyBullet lets links pass through each other, and the first line of the report counts what moves
     so, pushed or by its own motor. It is asked with `URDF_USE_SELF_COLLISION` besides, but for neighbours across fixed
     joints (as with `URDF_MERGE_FIXED_LINKS`) and links that the file declares not to collide with their model
@@ -326,16 +327,16 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     short = [run for run in context.hands if not context.reaches_end(run, run.pushed.farthest)]
     stuck = [run for run in short if not context.moves_by_motor(run)]
     left_plainly = context.passive_run if context.flag is None else context.left_without_contacts
-    result.measured["joints"] = float(len(context.mechanism.travels))
+    names = [travel.joint for travel in context.mechanism.travels if travel.joint not in context.closed]
+    result.measured["joints"] = float(len(names))
     moving = _moving(context, stuck, left_plainly.complaint, _leaves_plainly)
     result.measured["right"] = float(len(moving))
-    names = (travel.joint for travel in context.mechanism.travels)
     result.measured |= {f"{STILL}{name}": 1.0 for name in names if name not in moving}
     if context.flag is not None:
         with_contacts = _moving(context, short, context.passive_run.complaint, _leaves)
         result.measured["with_contacts"] = float(len(with_contacts))
     for run in short:
-        _find_short(result, context, run, jammed=_free_without_contacts(context, run))
+        _find_short(result, context, run, jammed=context.free_without_contacts(run))
 
 
 def _moving(
@@ -347,11 +348,6 @@ def _moving(
     """Names of the joints that a hand moves and nothing throws."""
     right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in short}
     return right - {travel.joint for travel in context.travels if complaint or leaves(context, travel)}
-
-
-def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:
-    """True if a push that fell short gets to the end where nothing touches."""
-    return run.without_contacts is not None and context.reaches_end(run, run.without_contacts)
 
 
 def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe, *, jammed: bool) -> None:

@@ -1,4 +1,4 @@
-"""KV141 to KV144: the mesh files that the document names, not opened yet."""
+"""KV141 and KV142: the mesh files that the document names, not opened yet."""
 
 from __future__ import annotations
 
@@ -120,37 +120,6 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
             value=len(references),
             line=references[0].line,
         )
-
-
-@check(
-    "KV144",
-    title="Mesh paths hold elsewhere",
-    fails="Mesh paths hold on one machine only",
-    severity=Severity.NOTE,
-    cause=Cause.ASSET,
-)
-def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
-    """No mesh path is absolute or written with backslashes.
-
-    Why it matters: The model works on the author's machine only.
-
-    Remedy: Write paths relative to the URDF, or package://NAME/PATH.
-    """
-    # one note for all of them
-    bound = [reference for reference in _references(urdf) if _is_bound(reference.filename)]
-    if bound:
-        result.find(
-            f"Mesh paths that hold on one machine or system only: {len(bound)}, the first is "
-            f"{shown(bound[0].filename)}.",
-            "Write paths relative to the URDF with forward slashes, or package://NAME/PATH.",
-            value=len(bound),
-            link=bound[0].link,
-            line=bound[0].line,
-        )
-
-
-def _is_bound(filename: str) -> bool:
-    return filename.startswith(("/", "file:")) or "\\" in filename or _DRIVE.match(filename) is not None
 
 
 def _references(urdf: Urdf) -> Iterator[_Reference]:

@@ -25,6 +25,10 @@ def something_closes(physics: Physics) -> str | None:
     return None if physics.model.loops else "no loop joint closes a chain"
 
 
+_SHORT = 0.05
+"""Of a range that a loop may leave: a piston's has a clearance beyond its dead points."""
+
+
 @check(
     "KV230",
     title="Loops stay closed over the range of their driver",
@@ -34,9 +38,10 @@ def something_closes(physics: Physics) -> str | None:
     needs=(something_closes,),
 )
 def loops_close(result: OpenCheck, physics: Physics) -> None:
-    """Both ends of a loop joint (`drake:ball_constraint`, `loop_joint`) coincide within physics.loop_gap of the model's
-    size, at rest and while each joint that leads goes through its range with the others at rest, and the joints that
-    the loop holds can move.
+    """Both ends of a loop joint (`drake:ball_constraint`, `loop_joint`, `connect`) coincide within physics.loop_gap of
+    the model's size, at rest and while each joint that leads goes through its range with the others at rest, and the
+    joints that the loop holds can move. Where what drives a loop has no limits, the only joint that has some gets to
+    both but for a twentieth of its range.
 
     Why it matters: An engine pulls an open loop together by force, and a linkage works against its own stops.
 
@@ -45,7 +50,8 @@ def loops_close(result: OpenCheck, physics: Physics) -> None:
     robot, size = physics.model, physics.diagonal
     rest = rest_configuration(robot)
     worst = {name: (gap, "", 0.0) for name, gap in loop_gaps(robot, rest).items()}
-    for joint, low, high in zip(robot.leaders, *joint_ends(robot.leaders), strict=True):
+    leaders = [joint for joint in robot.leaders if joint.is_limited]
+    for joint, low, high in zip(leaders, *joint_ends(leaders), strict=True):
         for value in np.linspace(low, high, _SAMPLES).tolist():
             for name, gap in loop_gaps(robot, {**rest, joint.name: value}).items():
                 if gap > worst[name][0] + 1e-9:
@@ -73,3 +79,14 @@ def loops_close(result: OpenCheck, physics: Physics) -> None:
                 limit=allowed,
                 unit="m",
             )
+    for item in found:
+        limited = [joint for name in item.joints if (joint := robot.joint_by_name[name]).is_limited]
+        if len(limited) == 1 and len(item.curve) and item.driver != limited[0].name:
+            (joint,), way = limited, item.curve[:, item.joints.index(limited[0].name)]
+            if np.ptp(way) < (1.0 - _SHORT) * (joint.upper - joint.lower):
+                result.find(
+                    f"The loop {', '.join(item.loops)} closes for {joint.name} from {way.min():.4g} to "
+                    f"{way.max():.4g}; its limits are {joint.lower:.4g} and {joint.upper:.4g}.",
+                    f"End the range of {joint.name} where its loop closes, or correct the points of the loop.",
+                    joint=joint.name,
+                )
