@@ -347,7 +347,8 @@ class AsLoadedContext:
         if self._surfaces is None:
             seen = float(np.clip(end, *self.request.free_travel[travel.joint]))
         else:
-            seen = self._surfaces.free_end(self.mechanism.travels.index(travel), end)
+            free = self._surfaces.free_end(self.mechanism.travels.index(travel), float(np.sign(end - travel.rest)))
+            seen = min(end, free, key=lambda value: abs(value - travel.rest))
         run = replace(run, end=seen) if abs(seen - travel.rest) > self._nothing(travel) else replace(run, free=False)
         if self.reaches_end(run, pushed.farthest):
             return run

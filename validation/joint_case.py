@@ -170,11 +170,13 @@ class JointCase:
     @property
     def outdone(self) -> bool:
         """Another joint of its type explains the contact clearly better."""
-        if not self.judged_alone or self.unexplained or self.measures.deficit <= self.usual_deficit:
+        measures, settings = self.measures, self.settings
+        usual = settings.linkage_better if self.linkage else settings.better
+        if not self.judged_alone or self.unexplained or measures.deficit <= usual:
             return False  # of course another one fits better than a direction that nothing shows
-        if self._supported:
-            return False
-        return not self.linkage or self.contradicted or self.blocked > self.settings.blocked
+        if measures.own_bearing > max(settings.bearing_score, 0.5 * measures.bearing):
+            return False  # both bodies are round about the declared line about as clearly: no habit speaks against it
+        return not self.linkage or self.contradicted or self.blocked > settings.blocked
 
     @property
     def doubts_line(self) -> bool:
@@ -196,17 +198,6 @@ class JointCase:
         if not self.linkage or not measures.slides:
             return True
         return measures.deficit > settings.better or measures.scene.has_bearing or self.blocked > settings.blocked
-
-    @property
-    def usual_deficit(self) -> float:
-        """By how much another joint may score better."""
-        return self.settings.linkage_better if self.linkage else self.settings.better
-
-    @property
-    def _supported(self) -> bool:
-        """Both bodies are round about the declared line about as clearly as about any: no habit speaks against it."""
-        measures = self.measures
-        return measures.own_bearing > max(self.settings.bearing_score, 0.5 * measures.bearing)
 
     @property
     def contradicted(self) -> bool:

@@ -287,7 +287,7 @@ def quaternions(result: OpenCheck, urdf: Urdf) -> None:
     turned = [
         origin
         for origin in urdf.robot.iter("origin")
-        if not _is_unturned(finite_numbers(origin.get("quat_xyzw") or "") or [])
+        if len(quaternion := finite_numbers(origin.get("quat_xyzw") or "") or []) == 4 and any(quaternion[:3])
     ]
     if turned:
         parent = turned[0].getparent()
@@ -319,10 +319,6 @@ def losses(result: OpenCheck, urdf: Urdf) -> None:
     """
     for sentence in urdf.losses:
         result.find(sentence, "Check what depends on it in an engine that reads the format.")
-
-
-def _is_unturned(quaternion: list[float]) -> bool:
-    return len(quaternion) != 4 or not any(quaternion[:3])
 
 
 def _structure(robot: _Element) -> Iterator[_Element]:
