@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -13,7 +14,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from kinematify.errors import InputError
-from kinematify.generate.kind_search import key_of, words_of
+from kinematify.generate.kind_search import key_of, lemma, words_of
 from kinematify.generate.library.kind import checked
 from kinematify.generate.procedural.clearance import carried_by, may_go
 from kinematify.generate.procedural.materials import MATERIALS, of_one_material, surface_of
@@ -46,7 +47,7 @@ _GAP = 0.05  # between several [m]
 _OWN_LOOK = ("rubber", "glass", "mirror")
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
-_PICKED = {**_SIDES, "rear": (1, 1), "upper": (2, 1), "lower": (2, -1)}
+_PICKED = pairs("left left|right right|front front|back back|rear back|top top|upper top|bottom bottom|lower bottom")
 _JOINTS = words_of("hinge slide tilt pan spin")
 """Nouns that mean what moves so where no part is called so: what moves most of the object."""
 _ALIKE = pairs(
@@ -97,22 +98,24 @@ def names_called(family: Kind, blueprint: Blueprint, noun: str) -> list[str]:
     words = noun.lower().replace("_", " ").split()
     picked = [word for word in words[:-1] if word in _PICKED or word in _ORDINALS]
     found: list[Part] = []
+    is_one = words[-1] == lemma(words[-1])
     for plain in (words, [word for word in words if word not in picked], words[-1:]):
-        found = _called(family, blueprint, " ".join(plain))
-        if found and plain is words:
-            return [part.name for part in found]
-        if found:
+        if found := _called(family, blueprint, " ".join(plain)):
+            picked = picked if plain is not words else []
             break
     for word in picked:
         if word in _ORDINALS:
             found.sort(key=lambda part: tuple(np.round(part.bounds.mean(axis=0)[[2, 0]], 3) * (-1, 1)))
             found = found[_ORDINALS.index(word) :][:1]
-        elif len(found) > 1:
-            axis, sign = _PICKED[word]
+        elif len(found) == 1:
+            found = found if is_at(blueprint, [found[0].name], _PICKED[word]) else []
+        elif found:
+            axis, sign = _SIDES[_PICKED[word]]
             places = [sign * float(part.bounds.mean(axis=0)[axis]) for part in found]
             middle = 0.5 * (min(places) + max(places))
             if max(places) - min(places) < _ASIDE:
                 middle = sign * float(blueprint.assembly.bounds.mean(axis=0)[axis])
+            middle = max(middle, max(places) - _ASIDE) if is_one else middle  # the top drawer of four
             found = [part for part, at in zip(found, places, strict=True) if at > middle]
     return [part.name for part in found]
 
@@ -155,12 +158,11 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
     Raises:
         InputError: A parameter is out of its bounds, or nothing can be built.
     """
-    family, faults, size = request.family, list[str](), request.size
-    sides = {item.name: item.default for item in family.parameters if item.name in ("width", "depth")}
-    if len(sides) == 2 and {"length", "width"} <= size.keys() and "depth" not in size:  # how long is one of them
-        short = min(sides, key=lambda name: float(sides[name]))
-        across = {"length": "depth" if short == "width" else "width", "width": short}
-        request = request.model_copy(update={"size": {across.get(name, name): far for name, far in size.items()}})
+    family, faults = request.family, list[str]()
+    if len(across := _across(family)) > 1 and {"width", "length"} == request.size.keys() - {"height"}:
+        own = {"width": across[0], "length": across[1]}  # how long is one of them
+        size = {own.get(name, name): far for name, far in request.size.items()}
+        request = request.model_copy(update={"size": size})
     values = dict(_values(family, request, faults))
     made = build(family, values, seed=seed)
     if fitted := _refitted(family, made, request):
@@ -176,7 +178,7 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
     for noun, part in request.parts.items():
         names = names_called(family, made, noun)
         if names:
-            made = _adjusted(made, names, part)
+            made = _adjusted(made, noun, names, part)
         elif part.count != 0 and not _is_detail(family, noun, made):
             missing.append(noun)
     faults += _faults(family, made, request, missing)
@@ -205,10 +207,8 @@ def _values(family: Kind, request: Request, faults: list[str]) -> Iterator[tuple
     ]
     for noun, part in request.parts.items():
         counted = count_parameter(family, noun)
-        if counted is not None and part.count is not None:
+        if counted is not None:
             wanted.append((counted.name, f"number of {noun}s", part.count))
-        if part.count == 0 and "none" in getattr(known.get(noun.replace(" ", "_")), "choices", ()):
-            wanted.append((noun.replace(" ", "_"), noun, "none"))
         wanted += [
             (name, f"{size} of the {noun}", value)
             for size, value in part.size.items()
@@ -216,8 +216,7 @@ def _values(family: Kind, request: Request, faults: list[str]) -> Iterator[tuple
         ]
         if noun.split()[-1] in ("handle", "knob", "pull", "grip") and "handle" in known:
             wanted += [(f"handle_{look}", look, getattr(part, look)) for look in ("color", "material")]
-        if part.hinge and "hinge_side" in known:
-            wanted.append(("hinge_side", "hinge", part.hinge))
+        wanted.append(("hinge_side", "hinge", part.hinge))
     for name, said, value in wanted:
         if name not in known or value is None or name in request.parameters:
             continue
@@ -240,27 +239,29 @@ def _is_detail(family: Kind, noun: str, made: Blueprint) -> bool:
     parameter = count_parameter(family, noun)
     if parameter is not None:
         return int(made.parameters[parameter.name]) > 0 and not _called(family, made, noun)
-    chosen = {item.name: str(made.parameters[item.name]) for item in family.parameters if item.choices}
-    own = {name for name, value in chosen.items() if value not in ("none", "no")}
-    return noun.rsplit(maxsplit=1)[-1] in (set(chosen.values()) | own)
+    chosen = [(item.name, made.parameters[item.name]) for item in family.parameters if item.choices]
+    return any(noun.rsplit(maxsplit=1)[-1] in said for said in chosen if said[1] not in ("none", "no"))
 
 
 def _length_names(family: Kind, noun: str, size: str) -> list[str]:
     """Parameters that are a size of a part: ``door_height``, or ``blade`` for its length."""
     own = noun.replace(" ", "_")
-    lengths = {item.name: item for item in family.parameters if item.unit == "m"}
-    plain = [own] if size == "length" else []
-    return [name for name in (f"{own}_{size}", *plain) if name in lengths][:1]
+    lengths = {item.name for item in family.parameters if item.unit == "m"}
+    return [name for name in (f"{own}_{size}", own * (size == "length")) if name in lengths][:1]
+
+
+def _across(family: Kind) -> list[str]:
+    """Its width and depth, the smaller one first, of those that are parameters."""
+    sides = {item.name: float(item.default) for item in family.parameters if item.name in ("width", "depth")}
+    return sorted(sides, key=sides.__getitem__)
 
 
 def _size_parameter(family: Kind, size: str) -> str:
     """Name of the parameter for a size of the whole; empty if there is none."""
-    lengths = {item.name: item for item in family.parameters if item.unit == "m"}
-    for name, item in lengths.items():
-        if size == name or size in item.words:
-            return name
-    across = sorted((name for name in ("width", "depth") if name in lengths), key=lambda name: lengths[name].default)
-    return across[-1] if size == "length" and len(across) > 1 else ""
+    for item in family.parameters:
+        if item.unit == "m" and size in (item.name, *item.words):
+            return item.name
+    return "" if size != "length" else (*_across(family)[1:], "")[0]
 
 
 def _refitted(family: Kind, made: Blueprint, request: Request) -> dict[str, Value]:
@@ -274,6 +275,13 @@ def _refitted(family: Kind, made: Blueprint, request: Request) -> dict[str, Valu
         with suppress(InputError):
             found[name] = checked(family, name, own + wanted - _sizes(made, size)[0])
     return found
+
+
+def main_size(family: Kind) -> str:
+    """Return the size that a bare one means: its length, its only one, or the largest of the object as it is usual."""
+    known = [item.name for item in family.parameters if item.name in (*_AXES, "length", "diameter")]
+    extents = np.ptp(closed(build(family, {})).assembly.bounds, axis=0)
+    return "length" if "length" in known else known[0] if len(known) == 1 else [*_AXES][extents.argmax()]
 
 
 def fits_size(made: Blueprint, size: str, wanted: float) -> bool:
@@ -292,17 +300,30 @@ def _sized(made: Blueprint, request: Request, faults: list[str]) -> Blueprint:
         return made
     factor = factors[0]
     if not 1.0 / _LARGER <= factor <= _LARGER:
-        kind = made.family.replace("_", " ")
-        faults.append(f"size: a {kind} can be {_LARGER:g} times as large or as small as usual, not {factor:.3g} times")
+        faults.append(f"size: it can be {_LARGER:g} times as large or as small as usual, not {factor:.3g} times")
         return made
     alone = len(factors) == len(request.size) and all(_same(factor, other) for other in factors)
     return made.scaled(factor) if alone else made
 
 
 def _sizes(made: Blueprint, name: str) -> list[float]:
-    """Sizes of all of an object, and of its base link [m]."""
+    """Sizes of all of an object, and of its base link; the diameter is that of a round part, if the whole is not round.
+
+    The part has to be half as large.
+    """
     shut = closed(made)
-    return [_extent(np.ptp(bounds, axis=0), name) for bounds in (shut.assembly.bounds, shut.parts[0].bounds)]
+    boxes = [np.ptp(bounds, axis=0) for bounds in (shut.assembly.bounds, shut.parts[0].bounds)]
+    if name == "diameter" and not _has_round_sides(boxes[0]):
+        turned = [np.ptp(part.bounds, axis=0) for part in shut.parts if are_round(shut, [part.name])]
+        most = max(turned, key=np.median, default=boxes[0])
+        if 2.0 * np.median(most) > boxes[0].max():
+            boxes = [most]
+    return [_extent(box, name) for box in boxes]
+
+
+def _has_round_sides(box: FloatArray) -> bool:
+    sides = np.sort(box)
+    return bool((np.diff(sides) / sides[1:]).min() < _ROUND)
 
 
 def _extent(extents: FloatArray, name: str) -> float:
@@ -325,13 +346,13 @@ def _mirror_helps(family: Kind, made: Blueprint, request: Request) -> bool:
         for noun, part in request.parts.items()
         if (part.side in sides or part.hinge in sides) and (names := names_called(family, made, noun))
     ]
-    return bool(held) and not any(held) and len(made.parts) > 1
+    return bool(held) and not any(held)
 
 
 # ---- parts ---------------------------------------------------------------------------------------------------------
 
 
-def _adjusted(made: Blueprint, names: Sequence[str], part: PartRequest) -> Blueprint:
+def _adjusted(made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Blueprint:
     """An object with the looks, ranges and opening of some parts as asked for, as far as that can be."""
     if part.color or part.material:
         made = looking(made, names, part.material or "", part.color or "")
@@ -339,7 +360,7 @@ def _adjusted(made: Blueprint, names: Sequence[str], part: PartRequest) -> Bluep
     moving = [joint.child for joint in _serving(made, names, how)]
     if part.range is not None:
         made = _ranged(made, [name for name in moving if moves_so(made.joint_above[name], how)], part.range)
-    if part.open is not None:
+    if part.open is not None and _is_clear(noun, names):
         made = opened(made, moving, part.open)
     return made
 
@@ -397,9 +418,9 @@ def opened(blueprint: Blueprint, names: Sequence[str], much: float | tuple[float
     values = {}
     for name in names:
         joint = blueprint.joint_above[name]
-        value = much[0] if isinstance(much, tuple) else much * _limits(joint)[1]
-        fits = not isinstance(much, tuple) or joint.kind.turns is (much[1] == "rad")
         lower, upper = _limits(joint)
+        value = much[0] if isinstance(much, tuple) else much * upper
+        fits = not isinstance(much, tuple) or joint.kind.turns is (much[1] == "rad")
         if (
             joint.kind is not JointType.FIXED
             and fits
@@ -435,11 +456,10 @@ def _ranged(blueprint: Blueprint, names: Sequence[str], wanted: tuple[float, flo
 
 def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[str]) -> Iterator[str]:
     kind = family.title
-    shut = closed(made)
     for name, wanted in request.size.items():
         if not fits_size(made, name, wanted):
             yield f"{name}: {wanted:.3g} m was asked for, it is {_sizes(made, name)[0]:.3g} m"
-    rows: list[tuple[int, str, list[FloatArray]]] = []
+    rows: list[tuple[int, str, FloatArray]] = []
     meant: list[tuple[str, set[str]]] = []
     for noun, part in request.parts.items():
         if noun in missing:
@@ -448,12 +468,11 @@ def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[s
             continue
         names = names_called(family, made, noun)
         yield from (f"{noun}: {why}" for why in part_faults(family, made, noun, names, part))
-        bounds = [item.bounds for item in shut.parts if item.name in names]
-        if part.row is not None and bounds:
-            rows.append((part.row, noun, bounds))
+        if part.row is not None and names:
+            rows.append((part.row, noun, _boxes(made, names).mean(axis=1)[:, 2]))
         meant.append((noun, set(names)))
     for (row, one, above), (other_row, other, below) in combinations(sorted(rows, key=lambda item: item[:2]), 2):
-        if row < other_row and min(box.mean(axis=0)[2] for box in above) <= max(box.mean(axis=0)[2] for box in below):
+        if row < other_row and above.min() <= below.max():
             yield f"{one}: not above the {other}"
     for (one, mine), (other, its) in combinations(meant, 2):
         if mine and mine == its and not {one, other} & set(_JOINTS):
@@ -474,12 +493,8 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     there = len(names)
     if parameter and (there < 2 or (part.count and there > part.count and there % part.count == 0)):
         there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
-    stems = {stem_of(name).replace("_", " ") for name in names}
     alike = {name for other in _ALIKE.get(noun, "").split() for name in names_called(family, made, other)}
-    groups = [
-        len({*names, *alike}),
-        *(sum(stem_of(name).replace("_", " ") == stem for name in names) for stem in stems),
-    ]
+    groups = [len({*names, *alike}), *Counter(map(stem_of, names)).values()]
     if part.count not in (None, there) and (part.count not in groups or parameter) and (names or parameter):
         yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
     if part.at_least and names and there < part.at_least and (parameter or noun.rsplit(maxsplit=1)[-1] in _APART):
@@ -508,7 +523,8 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
         yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
     if part.open is not None and not (leading and all(_stands(joint, part.open) for joint in leading)):
-        yield f"it does not open so far; its range is {_ranges(joints)}"
+        why = "which one is to be open is not said"
+        yield f"it does not open so far; its range is {_ranges(joints)}" if _is_clear(noun, names) else why
 
 
 def _serving(made: Blueprint, names: Sequence[str], motion: str) -> Iterator[BlueprintJoint]:
@@ -519,11 +535,20 @@ def _serving(made: Blueprint, names: Sequence[str], motion: str) -> Iterator[Blu
         yield above if carried else joint
 
 
+def _is_clear(noun: str, names: Sequence[str]) -> bool:
+    """True unless a noun with a side or an ordinal, in the singular, means several parts."""
+    words = noun.split()
+    return len(names) == 1 or words[-1] != lemma(words[-1]) or {*_PICKED, *_ORDINALS}.isdisjoint(words[:-1])
+
+
+def _boxes(made: Blueprint, names: Sequence[str]) -> FloatArray:
+    """Bounds of some parts of an object that is closed, of shape (N, 2, 3) [m]."""
+    return np.array([part.bounds for part in closed(made).parts if part.name in names])
+
+
 def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) -> bool:
     """Return True if parts stand in columns, side by side, and in rows, one above or behind another."""
-    boxes = np.array([part.bounds for part in closed(made).parts if part.name in names])
-    if not len(boxes):
-        return False
+    boxes = _boxes(made, names)
     apart = np.diff(np.sort(boxes.mean(axis=1), axis=0), axis=0) > 0.5 * np.ptp(boxes, axis=1).min(axis=0)
     along = 1 + apart.sum(axis=0)
     return bool(along[0] == columns and along[1:].max() == rows)
@@ -531,16 +556,13 @@ def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) ->
 
 def on_both_sides(made: Blueprint, names: Sequence[str]) -> bool:
     """Return True if as many of some parts are left of the middle as right of it."""
-    shut = closed(made)
-    middle = shut.assembly.bounds[:, 0].mean()
-    return not sum(np.sign(part.bounds[:, 0].mean() - middle) for part in shut.parts if part.name in names)
+    middle = closed(made).assembly.bounds[:, 0].mean()
+    return not np.sign(_boxes(made, names)[:, :, 0].mean(axis=1) - middle).sum()
 
 
 def goes_towards(made: Blueprint, joint: BlueprintJoint, side: str) -> bool:
     """Return True if what a joint carries goes to a side as it opens, or either way where it goes both."""
     low, high = _limits(joint)
-    if joint.kind is JointType.FIXED:
-        return False
     way = min(high, 0.5 * math.pi) if high > 0.0 else low
     shut = closed(made)
     part, there = (
@@ -564,19 +586,17 @@ def are_round(made: Blueprint, names: Sequence[str]) -> bool:
     """Return True if two sides of each part are as long, and it fills no more of its box than a cylinder does."""
     parts = [part for part in closed(made).parts if part.name in names]
     for part in parts:
-        sides = np.sort(np.ptp(part.bounds, axis=0))
-        gaps = np.diff(sides) / sides[1:]
-        if gaps.min() > _ROUND or ConvexHull(part.vertices).volume > _FILLED * float(np.prod(sides)):
+        box = np.ptp(part.bounds, axis=0)
+        if not _has_round_sides(box) or ConvexHull(part.vertices).volume > _FILLED * float(np.prod(box)):
             return False
     return bool(parts)
 
 
 def _size_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
-    shut = closed(made)
-    boxes = [item for item in shut.parts if item.name in names]
+    extents = np.ptp(_boxes(made, names), axis=1)
     for size, wanted in part.size.items():
         own = [made.parameters[name] for name in _length_names(family, noun, size)]
-        sizes = [*own, *(_extent(np.ptp(box.bounds, axis=0), size) for box in boxes)]
+        sizes = [*own, *(_extent(box, size) for box in extents)]
         if not any(_same(wanted, value) for value in sizes):
             yield f"{size}: {wanted:.3g} m was asked for, it is {sizes[0]:.3g} m"
 
@@ -590,10 +610,9 @@ def _is_looked(made: Blueprint, wanted: PartRequest) -> bool:
 def is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
     """Return True if all of some parts are at a side of the whole."""
     axis, sign = _SIDES[side]
-    shut = closed(made)
-    whole = shut.assembly.bounds[:, axis]
+    whole = closed(made).assembly.bounds[:, axis]
     near = _ASIDE * np.ptp(whole)
-    places = [sign * (item.bounds[:, axis] - whole.mean()) for item in shut.parts if item.name in names]
+    places = sign * (_boxes(made, names)[:, :, axis] - whole.mean())
     reach = 0.5 * np.ptp(whole)
     return all(
         place.mean() > near or (abs(place.max() - reach) < near and place.min() > near - reach) for place in places

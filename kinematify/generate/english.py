@@ -207,7 +207,6 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     ),
     (r"\ba (?=(?:metre|meter|foot) (?:and|wide|high|tall|long|deep|across|in|by)\b)", "1 "),
     (r"(\d+) and a half\b", r"\1.5"),
-    (r"(\d+ ?\w+) (?:off|above|from) the (?:floor|ground)", r", \1 high,"),
     (
         (
             r"^(?:(?:for|in) [^,;:.]*?,? )?(?:i|we|you|they|my \w+|our \w+) (?:(?:am|are|is|would|just|really) )*"
@@ -216,7 +215,6 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         ),
         "",
     ),
-    (r"^for (?:my|our|the) \w+,? (?=an? )", ""),
     (r"^((?:an? |the )?)built in ", r"\1"),
     (
         rf"((?:rotat|turn|swivel|spin|tilt|swing)\w*(?: (?:up|down|by|to|through))*) ({_NUMBER})(?=$|[,.;]| and )",
@@ -338,7 +336,7 @@ def vocabulary(family: Kind) -> dict[str, dict[str, Any]]:
 
 
 def _choices(item: Parameter) -> Iterator[tuple[str, str]]:
-    if item.name in ("modeling", "layout", "style") or not item.choices:
+    if item.name in ("modeling", "layout", "style"):
         return
     name = item.name.replace("_", " ")
     if "yes" in item.choices or ("none" in item.choices and len(item.choices) == 2):

@@ -19,6 +19,7 @@ from kinematify.generate.delivery import (
     deliver,
     goes_towards,
     is_at,
+    main_size,
     moves_so,
     names_called,
     on_both_sides,
@@ -139,16 +140,15 @@ class Sentence:
     copies: int = 1
     subject: str = ""
     """Noun of the last part; empty for the whole."""
+    listed: tuple[str, ...] = ()
+    """Nouns of the last list of parts, e.g. boom, stick and bucket."""
+    list_end: int = 0
     several: str = ""
     """The last noun of several, of which *the left one* is one."""
     is_plural: bool = False
     """The last noun is."""
-    is_hinged: bool = False
-    """In a clause that says where a hinge is."""
     is_shown: bool = False
     """In a clause such as *with the lid open*."""
-    is_pushed: bool = False
-    """Behind *pull the handle*."""
     fresh: bool = False
     """Nothing but attributes since the last comma, which are of the whole."""
     each: str = ""
@@ -169,8 +169,7 @@ class Sentence:
         limit = _match(_LIMIT, self.roles, first + 1).end()
         found = self._named(words, limit)
         for k in range(limit) if found is None else ():
-            other = repaired(words[k], words_of_names()) if self.roles[k] in "wa" else None
-            if other is not None:
+            if self.roles[k] in "wa" and (other := repaired(words[k], words_of_names())):
                 self.notes.append(f"Read {self._text(k)!r} as {other!r}.")
                 words[k] = other
                 found = self._named(words, limit)
@@ -261,23 +260,19 @@ class Sentence:
 
     def _sign(self, found: Match) -> int:
         k, end = found.start(), self.roles.index(",", found.end())
-        self.is_pushed = False
         if found[0] == ",":
             self.fresh |= not re.match("qD?,[^,]*qD,", self.roles[max(k - 2, 0) : k + 5].lstrip("#nNZ"))
-            self.is_shown, self.is_hinged, self.each = False, False, ""
+            self.is_shown, self.each = False, ""
             if OF_SOME.search(self._text(k + 1, end)):
                 self._take(range(k + 1, end), "!")
                 return end
         return k + 1
 
     def _clause(self, found: Match) -> int:
-        """Read how a relative clause begins; one about use asks for nothing but its numbers."""
+        """Read how a relative clause begins, and pass over one that says no fact; its words are listed."""
         verb = found.end()
-        end = _match("[^,hR]*", self.roles, verb).end()
         self.is_shown = self.fresh = False
-        if self.roles[verb] == "u":
-            self._take((k for k in range(verb, end) if self.roles[k] not in "#q"), "-")
-        return end if self.roles[verb] in "uwa" else verb
+        return _match("[^,hR]*", self.roles, verb).end() if self.roles[verb] in "uwa" else verb
 
     def _rows(self, found: Match) -> None:
         """Read rows and columns, of the last part or of the next."""
@@ -314,9 +309,7 @@ class Sentence:
                 return start, end
         return end - 1 - (end - 1 > k and self.roles[end - 2] in "wn"), end
 
-    def _part(  # noqa: PLR0912 - one per form of a noun
-        self, k: int, head: int, end: int, *, is_place: bool = False
-    ) -> str:
+    def _part(self, k: int, head: int, end: int, *, is_place: bool = False) -> str:
         """Keep what is said before a noun, of the part that it means; returns what it is called."""
         words = self._text(head, end)
         key = " ".join(key_of(words))
@@ -328,18 +321,18 @@ class Sentence:
             key, is_guess = self.several, False
             if words == "one":
                 facts.pop("count", None)
+            words = key if words == "one" else f"{key}s"
         if is_place and not is_choice and (key in _WHERE or not (meanings or key in self.things)):
             self._take(range(head, end) if key in _WHERE else (), "-")
             return key
-        if "bare" in facts:
-            facts["size"] = {"length": facts.pop("bare"), **facts.get("size", {})}
         if self.each and not is_place:
             if times := self.things.get(self.each, {}).get("count"):
                 facts["count"] = facts.get("count", 1) * times
             elif facts.get("count", 1) == 1:
                 facts["per"] = self.each
         facts |= self.ahead
-        self.ahead, is_plural, noun = {}, words != lemma(words), f"{pick} {key}".strip()
+        self.ahead, is_plural = {}, words != lemma(words)
+        noun = f"{pick} {words}" if pick else key
         if pick and facts.get("count") == 1:
             del facts["count"]
         elif "count" not in facts and not (pick or noun in self.things or is_choice or is_place):
@@ -379,9 +372,7 @@ class Sentence:
                 k += self._modifier(k, stop, facts, used, is_part=head is not None)
         return facts, used, is_choice
 
-    def _modifier(  # noqa: PLR0912 - one per class
-        self, k: int, stop: int, facts: Facts, used: list[int], *, is_part: bool
-    ) -> int:
+    def _modifier(self, k: int, stop: int, facts: Facts, used: list[int], *, is_part: bool) -> int:
         """Read one unit before a noun; returns how many were read."""
         word, behind, role = self._text(k), self._text(k + 1), self.roles[k]
         look = "color" if self._mean(k, "color") else "material"
@@ -395,16 +386,11 @@ class Sentence:
             said = {"count": int(number)} if number == int(number) and "count" not in facts else {}
         elif role in "qx":
             return self._size(k, facts, used)
-        elif self._mean(k, look):
-            value = self._mean(k, look)
-            stems = (behind[:-1], behind[:-2]) if self.roles[k + 1] == "a" and k + 1 < stop else ()
-            stem = next((stem for stem in stems if "part" in self.words.get(stem, {})), "")
-            if stem:  # orange handled
-                self._add(stem, [k, k + 1], **{look: value})
-                return 2
+        elif value := self._mean(k, look):
             said = {look: value} if facts.get(look, value) == value else {}
         elif role == "s":
-            said = {"pick": word}
+            facts["pick"] = f"{facts.pop('pick', '')} {word}".strip()
+            used.append(k)
         elif word in ("a", "an"):
             said = {"article": True}
         elif role == "S":
@@ -458,8 +444,8 @@ class Sentence:
             raise InputError(f"The text says {count} and {facts['count']} of {noun!r}. Say one.")
         fits = True
         for name, value in facts.items():
-            if name == "size":
-                own["size"] = {**own.get("size", {}), **value}
+            if name in ("size", "bare"):
+                own["size"] = {**own.get("size", {}), **(value if name == "size" else {"length": value})}
             elif own.get(name) == "move":
                 own[name] = value
             elif name == "side" and own.get(name, value) != value:  # at the top left
@@ -482,9 +468,7 @@ class Sentence:
         if self.roles[k] == "x":
             names = ["width", "depth", "height"]
             known = {item.name for item in self.family.parameters}
-            if len(numbers) == 2 and (
-                "depth" not in known or any(unit.text in ("deep", "depth") for unit in self.units)
-            ):
+            if len(numbers) == 2 and "depth" not in known:
                 names.remove("depth")
             if not si:
                 used.pop()
@@ -505,14 +489,10 @@ class Sentence:
     def _attribute(self, found: Match) -> int:
         """Read a look, a size or a side that is alone."""
         k, facts, used, owner = found.start(), Facts(), list[int](), self._owner
-        if found[0] == "q" and ("motion" in WORDS.get(owner.split(" ")[-1], ()) or self.is_pushed):
-            return self._range(found, k, owner)  # a gas lift of 10 cm
         k += self._modifier(k, k, facts, used, is_part=False)
         side = WORDS.get(facts.pop("pick", ""), {}).get("side")
         if side and owner:
             facts["towards" if self.roles[found.start() - 1] in "mM" else "side"] = side
-        if owner and "bare" in facts:
-            facts["size"]["length"] = facts.pop("bare")
         self._add(owner, used if facts else (), **facts)
         return k
 
@@ -533,16 +513,24 @@ class Sentence:
         return found.end()
 
     def _hinge(self, found: Match) -> None:
-        self.is_hinged = True
         self._fact(found, hinge=self._mean(found.start("edge"), "side"))
 
-    def _verb(self, found: Match) -> int:
+    def _owners(self, k: int, owner: str) -> tuple[str, ...]:
+        """Nouns that a verb is about: all of a list, where it says *each*, or is in the plural behind an *and*."""
+        between, is_shown = self.roles[self.list_end : k], self.roles[k] != "S" or self.is_shown
+        is_joined = re.search("&[^,&]*$", self.roles[: self.list_end]) and not self._text(k).endswith("s")
+        is_about = is_shown and (not between or (between == "R" and not self.is_plural))
+        is_all = is_joined and (is_about or re.fullmatch("[b_]+", between))
+        return self.listed if len(self.listed) > 1 and (is_all or re.fullmatch("[Rb_,]*P[b_]*", between)) else (owner,)
+
+    def _verb(self, found: Match) -> int:  # noqa: PLR0912 - one per form of a verb
         """Read how something moves, how far, or how it is shown."""
         how, share, stands, far, k = "", None, self.is_shown, found.start("far"), found.start()
         is_whole = self.roles[k] in "rq" or self._text(k).endswith("s") or "P" in found[0]
         owner = self._owner if is_whole else self.subject
         for j in range(*found.span("words")):
-            can, role = self.roles[j - 1] in "bR" and self._text(j - 1) not in ("is", "are"), self.roles[j]
+            before, role = j - 1 - (self.roles[j - 1] == "P"), self.roles[j]
+            can = self.roles[before] in "bR" and self._text(before) not in ("is", "are")
             goes = self._text(j) == "open" and (can or (self.is_plural and not stands and far > 0))
             if role == "S" and not goes and (not can or self._mean(j, "state") == "0"):
                 state, stands = float(self._mean(j, "state")), True
@@ -558,18 +546,22 @@ class Sentence:
         heads = [side for j in range(k, found.end()) if (side := self._mean(j, "towards"))]
         facts = {"towards": heads[0]} if heads and how else {}
         if how and far < 0 and self.roles[found.end() - 1] in "md" and self._span(found.end()):
-            self.ahead, self.is_pushed = {"motion": how, **facts}, True  # pull the handle
+            self.ahead = {"motion": how, **facts}  # pull the handle
             self._take(range(*found.span()))
         elif far > 0 and self._mean(found.start("then"), "state") == "0":  # 160 cm closed
             self._fact(found, owner, size={"length": values_of(self._text(far))[0][0]})
-        elif far > 0 and (stands or found["then"]) and self.roles[far] == "q" and not how:
-            self._fact(found, owner, open=values_of(self._text(far))[0])
-        elif far > 0:
-            self._range(found, far, owner, how or "move", **facts)
-        elif how:
-            self._fact(found, owner or (how if heads and how in ("hinge", "slide") else ""), motion=how, **facts)
-        elif stands and share is not None:
-            self._fact(found, owner, open=share)
+        elif not (share is None or owner or how) and (place := re.search("s[^,hR]*$", self.roles[:k])):
+            self._take(range(place.start(), found.end()), "!")  # the top half is open
+        else:
+            for noun in self._owners(k, owner):
+                if far > 0 and (stands or found["then"]) and self.roles[far] == "q" and not how:
+                    self._fact(found, noun, open=values_of(self._text(far))[0])
+                elif far > 0:
+                    self._range(found, far, noun, how or "move", **facts)
+                elif how:
+                    self._fact(found, noun, motion=how, **facts)
+                elif stands and share is not None:
+                    self._fact(found, noun, open=share)
         return found.end()
 
     # ---- places ----------------------------------------------------------------------------------------------------
@@ -593,6 +585,8 @@ class Sentence:
             last, the = self._text(span[1] - 1), self._text(k) in ("the", "its", "their")
             is_place = bool(self._owner) and (the or (last == lemma(last) and self.roles[k] not in "d#"))
             noun = self._part(k, *span, is_place=in_place and (is_place or lemma(last) in _WHERE))
+            is_more = noun not in self.listed and re.fullmatch(",*&?", self.roles[self.list_end : k])
+            self.listed, self.list_end = (*(self.listed if is_more else ()), noun), span[1]
             if self._text(k) in ("each", "every"):
                 self.each = noun if self.roles[span[1]] == "h" else ""
                 if in_place and noun != subject in self.things:
@@ -600,12 +594,8 @@ class Sentence:
 
     def _place_side(self, found: Match) -> None:
         side = self._mean(found.start("side"), "side")
-        if self._text(found.start()) == "to" and self.roles[found.start() - 1] in "mMaSv&q":
-            self._fact(found, towards=side)  # slides to the left
-        elif self.is_hinged and self.subject.startswith(tuple(_OPPOSITE)):
-            self._fact(found, hinge=side)  # the left one hinged on the left, the right one on the right
-        else:
-            self._fact(found, side=side)
+        is_way = self._text(found.start()) == "to" and self.roles[found.start() - 1] in "mMaSv&q"  # slides to the left
+        self._fact(found, **{"towards" if is_way else "side": side})
 
     def _relation(self, found: Match) -> int:
         """Read that one part is above another, and the like."""
@@ -629,9 +619,8 @@ class Sentence:
 
     def _rest(self, found: Match) -> None:
         """Pass over a word, or read in which direction what was named moves."""
-        k = found.start()
-        if (self.is_pushed or "motion" in self.things.get(self._owner, ())) and self._mean(k, "towards"):
-            self._fact(found, towards=self._mean(k, "towards"))
+        if "motion" in self.things.get(self._owner, ()) and (side := self._mean(found.start(), "towards")):
+            self._fact(found, towards=side)
 
     # ---- the whole -------------------------------------------------------------------------------------------------
 
@@ -648,9 +637,9 @@ class Sentence:
             self._take(units)
 
     def _whole(self, what: str, value: Any, units: Iterable[int]) -> None:
-        known, units = {item.name for item in self.family.parameters}, list(units)
+        units = list(units)
         if what == "bare":
-            what, value = "size", {"width" if "width" in known else "length": value}
+            what, value = "size", {main_size(self.family): value}
         if what == "size":
             sizes = self.things.setdefault("", {})
             for name, size in value.items():
@@ -664,8 +653,6 @@ class Sentence:
                 self._add("hinge" if value[1] == "rad" else "slide", units, open=value)
             else:
                 self._set("open", value, units)
-        elif what == "hinge" and "hinge_side" in known:
-            self._set("hinge_side", value, units)
         elif what == "hinge":
             self._add("door", units, hinge=value)
         elif what in ("motion", "towards", "round"):
@@ -738,15 +725,17 @@ class Sentence:
         named = key_of(self._text(self.start, self.stop))
         usual = next((said for word, said in self.family.usual.items() if key_of(word) == named), {})
         stated = {*sizes, *(item.name for noun in parts if (item := _counted(self.family, noun)))}
-        values = {
-            "kind": self.family.name,
-            "parameters": {**{name: value for name, value in usual.items() if name not in stated}, **self.values},
-            "size": sizes,
-            "parts": parts,
-            "copies": self.copies,
-            "instead_of": self.instead_of,
-        }
-        self.request = request_of(values, source=f"text {self.text!r}")
+        self.request = request_of(
+            {
+                "kind": self.family.name,
+                "parameters": {**{name: value for name, value in usual.items() if name not in stated}, **self.values},
+                "size": sizes,
+                "parts": parts,
+                "copies": self.copies,
+                "instead_of": self.instead_of,
+            },
+            source=f"text {self.text!r}",
+        )
 
     def made(self, *, seed: int | None = None) -> BuildResult:
         """Build the object and measure it.
@@ -768,10 +757,8 @@ class Sentence:
             if not (are_round(blueprint, [blueprint.parts[0].name]) if what == "round" else holds):
                 taken |= dict.fromkeys(units, "!")
         for noun, facts in self.things.items():
-            names = names_called(self.family, blueprint, noun)
-            if noun in made.missing or not names:
-                continue
-            listed += [f"{noun}: {why}" for why in self._inner_faults(facts, blueprint, names)]
+            if names := names_called(self.family, blueprint, noun):
+                listed += [f"{noun}: {why}" for why in self._inner_faults(facts, blueprint, names)]
         there = {key for part in blueprint.parts for key in key_of(part.name.replace("_", " "))}
         low, high = blueprint.assembly.bounds
         large = float((high - low).max())
