@@ -98,7 +98,6 @@ def names_called(family: Kind, blueprint: Blueprint, noun: str) -> list[str]:
     words = noun.lower().replace("_", " ").split()
     picked = [word for word in words[:-1] if word in _PICKED or word in _ORDINALS]
     found: list[Part] = []
-    is_one = words[-1] == lemma(words[-1])
     for plain in (words, [word for word in words if word not in picked], words[-1:]):
         if found := _called(family, blueprint, " ".join(plain)):
             picked = picked if plain is not words else []
@@ -115,7 +114,8 @@ def names_called(family: Kind, blueprint: Blueprint, noun: str) -> list[str]:
             middle = 0.5 * (min(places) + max(places))
             if max(places) - min(places) < _ASIDE:
                 middle = sign * float(blueprint.assembly.bounds.mean(axis=0)[axis])
-            middle = max(middle, max(places) - _ASIDE) if is_one else middle  # the top drawer of four
+            if words[-1] == lemma(words[-1]):  # the top drawer of four
+                middle = max(middle, max(places) - _ASIDE)
             found = [part for part, at in zip(found, places, strict=True) if at > middle]
     return [part.name for part in found]
 
@@ -159,7 +159,7 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
         InputError: A parameter is out of its bounds, or nothing can be built.
     """
     family, faults = request.family, list[str]()
-    if len(across := _across(family)) > 1 and {"width", "length"} == request.size.keys() - {"height"}:
+    if (across := _across(family))[1:] and {"width", "length"} == request.size.keys() - {"height"}:
         own = {"width": across[0], "length": across[1]}  # how long is one of them
         size = {own.get(name, name): far for name, far in request.size.items()}
         request = request.model_copy(update={"size": size})
@@ -207,8 +207,11 @@ def _values(family: Kind, request: Request, faults: list[str]) -> Iterator[tuple
     ]
     for noun, part in request.parts.items():
         counted = count_parameter(family, noun)
-        if counted is not None:
+        if counted:
             wanted.append((counted.name, f"number of {noun}s", part.count))
+        own = noun.replace(" ", "_")
+        if part.count == 0 and "none" in getattr(known.get(own), "choices", ()):
+            wanted.append((own, noun, "none"))
         wanted += [
             (name, f"{size} of the {noun}", value)
             for size, value in part.size.items()
@@ -237,7 +240,7 @@ def count_parameter(family: Kind, noun: str) -> Parameter | None:
 def _is_detail(family: Kind, noun: str, made: Blueprint) -> bool:
     """True if a noun is what a parameter counts or chose, and no part: slots, or bars that are handles of drawers."""
     parameter = count_parameter(family, noun)
-    if parameter is not None:
+    if parameter:
         return int(made.parameters[parameter.name]) > 0 and not _called(family, made, noun)
     chosen = [(item.name, made.parameters[item.name]) for item in family.parameters if item.choices]
     return any(noun.rsplit(maxsplit=1)[-1] in said for said in chosen if said[1] not in ("none", "no"))
@@ -358,7 +361,7 @@ def _adjusted(made: Blueprint, noun: str, names: Sequence[str], part: PartReques
         made = looking(made, names, part.material or "", part.color or "")
     how = part.motion or "move"
     moving = [joint.child for joint in _serving(made, names, how)]
-    if part.range is not None:
+    if part.range:
         made = _ranged(made, [name for name in moving if moves_so(made.joint_above[name], how)], part.range)
     if part.open is not None and _is_clear(noun, names):
         made = opened(made, moving, part.open)
@@ -468,7 +471,7 @@ def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[s
             continue
         names = names_called(family, made, noun)
         yield from (f"{noun}: {why}" for why in part_faults(family, made, noun, names, part))
-        if part.row is not None and names:
+        if part.row and names:
             rows.append((part.row, noun, _boxes(made, names).mean(axis=1)[:, 2]))
         meant.append((noun, set(names)))
     for (row, one, above), (other_row, other, below) in combinations(sorted(rows, key=lambda item: item[:2]), 2):

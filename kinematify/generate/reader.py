@@ -168,12 +168,12 @@ class Sentence:
         first = _match("[^wacsmSNMntDuTB]*", self.roles, 0).end() % len(self.roles)
         limit = _match(_LIMIT, self.roles, first + 1).end()
         found = self._named(words, limit)
-        for k in range(limit) if found is None else ():
+        for k in range(limit) if not found else ():
             if self.roles[k] in "wa" and (other := repaired(words[k], words_of_names())):
                 self.notes.append(f"Read {self._text(k)!r} as {other!r}.")
                 words[k] = other
                 found = self._named(words, limit)
-        if found is None:
+        if not found:
             head = self._text(first, limit) or self.text
             near = nearest_kinds(head)
             if not nearest:
@@ -216,7 +216,7 @@ class Sentence:
         for start in range(limit):
             for end in range(min(start + 6, len(words)), start, -1):
                 family = kind_called(words[start:end]) if all(words[start:end]) else None
-                if family is not None and "w" not in re.split("[,#qxr]", self.roles[end:limit])[0]:
+                if family and "w" not in re.split("[,#qxr]", self.roles[end:limit])[0]:
                     return family, start, end
         return None
 
@@ -337,7 +337,7 @@ class Sentence:
             del facts["count"]
         elif "count" not in facts and not (pick or noun in self.things or is_choice or is_place):
             counted = _counted(self.family, noun)
-            several = {"at_least" if counted is None or counted.default else "count": 2}
+            several = {"at_least" if not counted or counted.default else "count": 2}
             facts |= several if is_plural else {"count": 1} if article and "per" not in facts else {}
         if key in _STILL:
             facts.pop("open", None)
@@ -496,7 +496,7 @@ class Sentence:
         self._add(owner, used if facts else (), **facts)
         return k
 
-    def _range(self, found: Match, k: int, owner: str, how: str = "move", **facts: Any) -> int:
+    def _range(self, found: Match, k: int, owner: str, how: str, **facts: Any) -> None:
         """Give a range, with the motion that its unit means; it is not read where the text says another motion."""
         numbers = values_of(self._text(k))
         (low, _), (value, si) = numbers[0], numbers[-1]
@@ -510,7 +510,6 @@ class Sentence:
         fits = (how in ("slide", "lift")) is (si == "m")
         facts |= {"range": tuple(sorted((low, value))), "motion": how} if fits else {"motion": how}
         self._add(owner, range(*found.span()) if fits else (), **facts)
-        return found.end()
 
     def _hinge(self, found: Match) -> None:
         self._fact(found, hinge=self._mean(found.start("edge"), "side"))
@@ -521,7 +520,7 @@ class Sentence:
         is_joined = re.search("&[^,&]*$", self.roles[: self.list_end]) and not self._text(k).endswith("s")
         is_about = is_shown and (not between or (between == "R" and not self.is_plural))
         is_all = is_joined and (is_about or re.fullmatch("[b_]+", between))
-        return self.listed if len(self.listed) > 1 and (is_all or re.fullmatch("[Rb_,]*P[b_]*", between)) else (owner,)
+        return self.listed if self.listed[1:] and (is_all or re.fullmatch("[Rb_,]*P[b_]*", between)) else (owner,)
 
     def _verb(self, found: Match) -> int:  # noqa: PLR0912 - one per form of a verb
         """Read how something moves, how far, or how it is shown."""
@@ -548,8 +547,8 @@ class Sentence:
         if how and far < 0 and self.roles[found.end() - 1] in "md" and self._span(found.end()):
             self.ahead = {"motion": how, **facts}  # pull the handle
             self._take(range(*found.span()))
-        elif far > 0 and self._mean(found.start("then"), "state") == "0":  # 160 cm closed
-            self._fact(found, owner, size={"length": values_of(self._text(far))[0][0]})
+        elif self._mean(found.start("then"), "state") == "0":  # 160 cm closed
+            self._fact(found, owner, bare=values_of(self._text(far))[0][0])
         elif not (share is None or owner or how) and (place := re.search("s[^,hR]*$", self.roles[:k])):
             self._take(range(place.start(), found.end()), "!")  # the top half is open
         else:
@@ -664,7 +663,7 @@ class Sentence:
     def _cell(self, noun: str) -> str:
         """The field of a layout that a noun means; empty if the kind has no layout, or none of the noun."""
         counted = _counted(self.family, noun) if any(item.name == "layout" for item in self.family.parameters) else None
-        own = "" if counted is None else lemma(counted.name)
+        own = lemma(counted.name) if counted else ""
         return own if own in CELLS else ""
 
     def _lay_out(self) -> None:
@@ -806,7 +805,7 @@ class Sentence:
 
 def _match(pattern: str, text: str, k: int) -> Match:
     found = re.compile(pattern).match(text, k)
-    assert found, "a pattern that fits everything"
+    assert found
     return found
 
 

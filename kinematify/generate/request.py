@@ -44,7 +44,7 @@ def quantity(text: str) -> tuple[float, str]:
         ValueError: It says none.
     """
     found = _QUANTITY.fullmatch(text.strip())
-    if found is None:
+    if not found:
         raise ValueError(f"{text!r} is no number with a unit; write for example 80 cm, 0.8 or 30 deg")
     return in_si(found[1], found[2])
 
@@ -64,7 +64,7 @@ def _plain(value: Any) -> Any:
 def _pair(value: Any) -> Any:
     if isinstance(value, str):
         found = _RANGE.fullmatch(value.strip())
-        if found is None:
+        if not found:
             raise ValueError(f"{value!r} is no range; write for example -30 to 90 deg, or 0 to 40 cm")
         return in_si(found[1], found[3])[0], in_si(found[2], found[3])[0]
     return value
@@ -132,7 +132,7 @@ class PartRequest(_Fields):
     def _motion_of_range(cls, values: Any) -> Any:
         """Say of a range in metres that the part slides, of one in degrees that it turns."""
         found = _RANGE.fullmatch(str(values.get("range")).strip()) if isinstance(values, dict) else None
-        if found is None or not found[3]:
+        if not found or not found[3]:
             return values
         slides, motion = found[3] in UNITS, values.get("motion") or "move"
         if motion != "move" and slides is not (motion in ("slide", "lift")):
@@ -178,7 +178,7 @@ class Request(_Fields):
 def _said(family: Kind, name: str, value: Any) -> Any:
     """A value of a parameter that is a number, where the text says a unit."""
     parameter = next((item for item in family.all_parameters if item.name == name), None)
-    if isinstance(value, str) and parameter is not None and not isinstance(parameter.default, str):
+    if isinstance(value, str) and parameter and not isinstance(parameter.default, str):
         try:
             return quantity(value)[0]
         except ValueError:
@@ -194,7 +194,7 @@ def find_family(name: str) -> Kind:
     """
     words = re.findall(r"[a-z0-9]+", name.lower())
     family = kind_named("_".join(words)) or kind_called(key_of(words))
-    if family is None:
+    if not family:
         near = " or ".join(item.name for item in nearest_kinds(" ".join(words), 2))
         raise InputError(f"There is no kind {name!r}. Did you mean {near}? kinematify generate --list shows all.")
     return family

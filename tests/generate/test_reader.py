@@ -164,6 +164,12 @@ def test_a_bare_size_is_the_largest_of_the_kind(text, size):
     assert sentence.made().is_complete
 
 
+def test_without_handles_is_without_handles():
+    made = read_sentence("a cupboard without handles, three doors").made()
+    assert made.is_complete
+    assert made.blueprint.parameters["handle"] == "none"
+
+
 def test_a_verb_behind_a_list_of_parts_is_said_of_each():
     for text in (
         "an excavator whose boom, stick and bucket each move",
