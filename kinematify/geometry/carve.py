@@ -66,8 +66,8 @@ class SweptJoint:
 
     moved: frozenset[int]
     """Bodies that it moves."""
-    against: frozenset[int] | None = None
-    """Bodies that it moves them against; None: all others."""
+    against: frozenset[int]
+    """Bodies that it moves them against."""
     followed: Callable[[FloatArray], Motions] | None = None
     """How it moves them against these at values (n,), where other joints follow; None: it turns or slides them."""
     turns: bool
@@ -212,16 +212,20 @@ def carved(
     ]
     jams: list[tuple[int, int, int]] = []
     for number, sweep in enumerate(sweeps):
-        free = partial(free_end, number)
-        clearing = _Carver(alive, volumes, extents, sweep, free, clearance=clearance, thinnest=thinnest, kept=kept)
+        clearing = _Carver(
+            alive, volumes, extents, sweep, partial(free_end, number),
+            clearance=clearance, thinnest=thinnest, kept=kept,
+        )  # fmt: skip
         jams += [(number, one, other) for one, other in clearing.run()]
     for body, (group, volume, surface) in enumerate(zip(alive, volumes, surfaces, strict=True)):
         while body not in kept and len(group) > most:
             group.remove(min(group, key=partial(_Polytope.share, volume=volume, marks=len(surface))))
-    left = [sum(item.piece.volume for item in group) for group in alive]
     return Carved(
         pieces=tuple(tuple(item.piece for item in group) for group in alive),
-        lost=tuple(max(0.0, 1.0 - now / max(before, 1e-300)) for now, before in zip(left, volumes, strict=True)),
+        lost=tuple(
+            max(0.0, 1.0 - sum(item.piece.volume for item in group) / max(before, 1e-300))
+            for group, before in zip(alive, volumes, strict=True)
+        ),
         jams=tuple(jams),
     )
 
@@ -256,10 +260,9 @@ class _Carver:
         """Keep the pieces of all bodies, which are cut in place but for those kept, and volumes and extents."""
         self._kept = kept
         self._alive, self._volumes, self._extents, self._thinnest = alive, volumes, extents, thinnest
-        self._free_end, self._clearance = cache(free_end), clearance
+        self._free_end, self._clearance = free_end, clearance
         self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
-        against = frozenset(range(len(alive))) - sweep.moved if sweep.against is None else sweep.against
-        self._resting = [item for body in sorted(against) for item in alive[body]]
+        self._resting = [item for body in sorted(sweep.against) for item in alive[body]]
         self._path = _Path(sweep, self._moving, clearance)
         self._rest_of: dict[_Polytope, list[_Polytope]] = {}
 

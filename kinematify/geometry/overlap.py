@@ -31,8 +31,6 @@ class OverlapQueries:
         """Keep the scene; trees are built when a pair is first near each other."""
         self._scene = scene
         self._object = cache(self._new_object)
-        self.queries = 0
-        """Pairs in poses that FCL was asked about."""
 
     def solids(self, pair: Pair) -> tuple[Solid, Solid]:
         """Both solids."""
@@ -52,7 +50,6 @@ class OverlapQueries:
         for row, rotation, shift in zip(rows.tolist(), rotations, shifts, strict=True):
             moving.setTransform(transform(rotation, shift))
             hit[row] = fcl.collide(fixed, moving, request, fcl.CollisionResult()) > 0
-        self.queries += len(rows)
         return hit
 
     def may_contain(self, pair: Pair, T: FloatArray) -> BoolArray:

@@ -59,10 +59,6 @@ class SweepSide:
     """Neighbours that may get farther apart than `lost` allows within the declared range, with their largest gap there
     [m] and the value at which."""
 
-    def free(self, pairs: frozenset[Pair] | None = None) -> float:
-        """Value up to which nothing, or none of some pairs, meets [rad or m]."""
-        return next((m.first for m in self.meetings if pairs is None or m.pair in pairs), self.reached)
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JointSweep:
@@ -78,7 +74,7 @@ class JointSweep:
     @property
     def free(self) -> tuple[float, float]:
         """Range around rest in which nothing collides [rad or m]."""
-        low, high = (side.free() for side in self.sides)
+        low, high = (side.meetings[0].first if side.meetings else side.reached for side in self.sides)
         return low, high
 
 

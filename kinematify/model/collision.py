@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
     from kinematify.config import CollisionConfig
     from kinematify.config.validation import GeometrySettings, PrepareSettings
+    from kinematify.geometry.scene import Pair
+    from kinematify.geometry.sweep import JointSweep
     from kinematify.model.collision_pieces import Pieces
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Link, Robot
@@ -118,6 +120,7 @@ def fit_collision(
     geometry: GeometrySettings,
     *,
     only: frozenset[str] | None = None,
+    swept: Mapping[str, JointSweep] | None = None,
 ) -> FittedCollision:
     """Replace the collision geometry of links, or their visual geometry, by boxes, cylinders and convex pieces.
 
@@ -131,22 +134,30 @@ def fit_collision(
         decomposition: The rest of how they are.
         geometry: When surfaces block a motion.
         only: Links that get pieces, carved clear of what the others collide with now; all if absent.
+        swept: Joints that were moved already with all that is visible of the same bodies.
 
     Returns:
         The robot with pieces in the link frames; meshes among them name files in ``meshes/`` that are not written yet.
     """
     given, robot = robot, _thinned(robot)
-    finer = {name: getattr(config, name) for name in ("link_gap", "model_gap", "cuts", "cuts_per_link")}
     kept = frozenset(i for i, link in enumerate(robot.links) if only is not None and link.name not in only)
-    pieces = decomposed(robot, decomposition.model_copy(update=finer), only=only)
+    pieces = decomposed(
+        robot,
+        decomposition.model_copy(
+            update={name: getattr(config, name) for name in ("link_gap", "model_gap", "cuts", "cuts_per_link")}
+        ),
+        only=only,
+    )
     poses = forward_kinematics(robot, rest_configuration(robot))
     bodies = [
         _as_it_is(link, poses[link.name]) if i in kept else _in_world(_few(pieces[link.name], config), poses[link.name])
         for i, link in enumerate(robot.links)
     ]
-    clearance = min(config.clearance, config.clearance_share * _size(bodies))
+    ends = np.array([end for group in bodies for piece in group for end in (piece.low, piece.high)])
+    size = float(np.linalg.norm(np.ptp(ends, axis=0))) if len(ends) else 0.0
+    clearance = min(config.clearance, config.clearance_share * size)
     sweeps = _sweeps(robot, poses, config)
-    exact = _ExactSweeps(robot, geometry, config.forced_share, sweeps)
+    exact = _ExactSweeps(robot, geometry, config.forced_share, sweeps, swept)
     result = carved(
         bodies,
         [np.empty((0, 3)) if i in kept else _marks(link, poses[link.name]) for i, link in enumerate(robot.links)],
@@ -170,9 +181,21 @@ def fit_collision(
         )
         links.append(replace(given.links[index], collisions=_named(shapes, link.name, index)))
         if shapes:
-            outside = pieces[link.name].gap + max(beyond for _, beyond in fitted)
+            kinds = Counter(shape.kind for shape in shapes)
             moved = _thinning(given.links[index])
-            facts.append(_fitted(link, shapes, outside=outside + moved, lost=result.lost[index], thinned=moved))
+            facts.append(
+                FittedLink(
+                    link=link.name,
+                    boxes=kinds["box"],
+                    cylinders=kinds["cylinder"],
+                    spheres=kinds["sphere"],
+                    convex=kinds["mesh"],
+                    outside=pieces[link.name].gap + max(beyond for _, beyond in fitted) + moved,
+                    left_out=_left_out(link, shapes) + moved,
+                    carved=result.lost[index],
+                    thinned=moved,
+                )
+            )
     return FittedCollision(
         robot=replace(given, links=tuple(links)),
         links=tuple(facts),
@@ -230,6 +253,7 @@ class _Sweep:
     """Two groups of links that a joint moves apart."""
 
     joint: str
+    leader: int
     leads: bool
     """The joint itself is between them; where only followers are, they are carved for the clearance alone."""
     motion: SweptJoint
@@ -238,30 +262,41 @@ class _Sweep:
 class _ExactSweeps:
     """Where the visible surfaces of two links let a joint move, asked pair by pair."""
 
-    def __init__(self, robot: Robot, settings: GeometrySettings, forced_share: float, sweeps: Sequence[_Sweep]) -> None:
-        self._robot, self._sweeps = robot, sweeps
+    def __init__(
+        self,
+        robot: Robot,
+        settings: GeometrySettings,
+        forced_share: float,
+        sweeps: Sequence[_Sweep],
+        swept: Mapping[str, JointSweep] | None,
+    ) -> None:
+        self._sweeps, self._swept = sweeps, swept or {}
         self._scene = read_scene(robot, settings, visible_shapes)
         self._forced = forced_share * self._scene.size
         self._sweeper = Sweeper.of(self._scene)
         self._body_of = {name: index for index, body in enumerate(self._scene.bodies) for name in body.links}
-        self._leader_of = {travel.joint: index for index, travel in enumerate(self._scene.travels)}
         self._asked = cache(self._end)
         self.blocked: list[Blocked] = []
 
     def free_end(self, sweep: int, first: int, second: int, sign: float) -> float:
         """Value from rest up to which a joint does not bring two links into each other on one side [rad or m]."""
-        if not self._sweeps[sweep].leads:
+        asked = self._sweeps[sweep]
+        if not asked.leads:
             return sign * np.inf
-        a, b = sorted(self._body_of[self._robot.links[link].name] for link in (first, second))
-        return self._asked(self._leader_of[self._sweeps[sweep].joint], a, b, sign)
+        a, b = sorted(self._body_of[self._scene.model.links[link].name] for link in (first, second))
+        return self._asked(asked.leader, (a, b), sign)
 
-    def _end(self, leader: int, first: int, second: int, sign: float) -> float:
-        meeting = self._sweeper.meeting(leader, (first, second), sign)
+    def _end(self, leader: int, pair: Pair, sign: float) -> float:
+        travel = self._scene.travels[leader]
+        swept = self._swept.get(travel.joint)
+        if swept and pair not in {item.pair for item in swept.sides[sign > 0.0].meetings if item.inside}:
+            return sign * np.inf
+        meeting = self._sweeper.meeting(leader, pair, sign)
         if meeting is None or meeting.depth <= self._forced:
             return sign * np.inf
-        travel = self._scene.travels[leader]
-        links = self._scene.name((first, second))
-        self.blocked.append(Blocked(joint=travel.joint, links=links, at=meeting.first, depth=meeting.depth))
+        self.blocked.append(
+            Blocked(joint=travel.joint, links=self._scene.name(pair), at=meeting.first, depth=meeting.depth)
+        )
         return meeting.first - travel.rest
 
 
@@ -286,7 +321,7 @@ def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConf
                 lower=min(float(low) - rest, 0.0) - slack,
                 upper=max(float(high) - rest, 0.0) + slack,
             )
-            found.append(_Sweep(joint=joint.name, leads=joint.name in resting ^ moved, motion=motion))
+            found.append(_Sweep(joint=joint.name, leader=column, leads=joint.name in resting ^ moved, motion=motion))
     return found
 
 
@@ -328,28 +363,27 @@ class _MovedTogether:
         }
 
 
-def _size(bodies: Sequence[Sequence[ConvexPiece]]) -> float:
-    """Diagonal of the box around all pieces [m]."""
-    ends = np.array([end for group in bodies for piece in group for end in (piece.low, piece.high)])
-    return float(np.linalg.norm(np.ptp(ends, axis=0))) if len(ends) else 0.0
-
-
 def _few(pieces: Pieces, config: CollisionConfig) -> Pieces:
     """At most as many convex pieces as a link may have."""
-    few = fewer_pieces(pieces.convex, config.most_pieces, thickness=_THINNEST, corners=config.corners)
-    return replace(pieces, convex=tuple(few))
+    return replace(
+        pieces,
+        convex=tuple(fewer_pieces(pieces.convex, config.most_pieces, thickness=_THINNEST, corners=config.corners)),
+    )
 
 
 def _in_world(pieces: Pieces, T_world_link: FloatArray) -> list[ConvexPiece]:
     """All pieces of a link in the world frame, primitives first."""
-    primitives = [enclosing_piece(shape.mesh.vertices, directions=_CORNERS) for shape in pieces.primitives]
+    primitives = (enclosing_piece(shape.mesh.vertices, directions=_CORNERS) for shape in pieces.primitives)
     return [_moved(piece, T_world_link) for piece in (*primitives, *pieces.convex)]
 
 
 def _as_it_is(link: Link, T_world_link: FloatArray) -> list[ConvexPiece]:
     """Return what engines collide of a link that stays as it is: primitives and hulls, in the world frame."""
-    points = [shape.mesh.vertices for shape in link.collisions if len(shape.mesh.faces)]
-    return [_moved(convex_piece(item, thickness=_THINNEST, directions=_CORNERS), T_world_link) for item in points]
+    return [
+        _moved(convex_piece(shape.mesh.vertices, thickness=_THINNEST, directions=_CORNERS), T_world_link)
+        for shape in link.collisions
+        if len(shape.mesh.faces)
+    ]
 
 
 def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
@@ -363,27 +397,11 @@ def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
 
 def _marks(link: Link, T_world_link: FloatArray) -> FloatArray:
     """Points on what the pieces of a link represent, world frame, shape (n, 3)."""
-    points = _on_surface((shape.mesh for shape in judged_shapes(link)), _MARKS)
-    return transformed(points, T_world_link)
+    return transformed(_on_surface((shape.mesh for shape in judged_shapes(link)), _MARKS), T_world_link)
 
 
 def _moved(piece: ConvexPiece, T: FloatArray) -> ConvexPiece:
     return ConvexPiece(vertices=transformed(piece.vertices, T), faces=piece.faces)
-
-
-def _fitted(link: Link, shapes: Sequence[Shape], *, outside: float, lost: float, thinned: float) -> FittedLink:
-    kinds = Counter(shape.kind for shape in shapes)
-    return FittedLink(
-        link=link.name,
-        boxes=kinds["box"],
-        cylinders=kinds["cylinder"],
-        spheres=kinds["sphere"],
-        convex=kinds["mesh"],
-        outside=outside,
-        left_out=_left_out(link, shapes) + thinned,
-        carved=lost,
-        thinned=thinned,
-    )
 
 
 def _on_surface(meshes: Iterable[LinkMesh], count: int) -> FloatArray:

@@ -15,8 +15,11 @@ from kinematify.model.urdf import model_robot
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from kinematify.config import Config
     from kinematify.config.validation import PrepareSettings
+    from kinematify.geometry.sweep import JointSweep
     from kinematify.model.collision import FittedCollision
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.robot.robot import Inertial, Joint, Robot
@@ -75,19 +78,26 @@ def _rounded_inertial(inertial: Inertial | None) -> Inertial | None:
     )
 
 
-def simulable_model(model: KinematicModel, config: Config, *, powered: bool = False) -> SimulableModel:
+def simulable_model(
+    model: KinematicModel,
+    config: Config,
+    *,
+    powered: bool = False,
+    swept: Mapping[str, JointSweep] | None = None,
+) -> SimulableModel:
     """Return the model with friction, damping, liftable parts and collision geometry that leaves the motion free.
 
     Args:
         model: The model.
         config: Of all stages.
         powered: As of `with_dynamics`.
+        swept: As of `fit_collision`.
     """
     robot = with_dynamics(rounded(model_robot(model)), powered=powered)
     if config.collision.mode == "mesh":
         return SimulableModel(robot=robot, collision=None)
     settings = load_settings()
-    fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry)
+    fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry, swept=swept)
     return SimulableModel(robot=fitted.robot, collision=fitted)
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config, TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.contact.tree import KinematicTree
+    from kinematify.geometry.sweep import JointSweep
     from kinematify.grouping.groups import Grouping
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
@@ -132,6 +133,11 @@ class Inference:
     """What `kinematify.validate` said of the folder that was written, or the error that kept it from an answer."""
     provenance: Mapping[str, Any] | None = None
     """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
+
+    @cached_property
+    def swept(self) -> dict[str, JointSweep]:
+        """Motions of its joints that were simulated; a copy with other joints has to be simulated anew."""
+        return {}
 
     @property
     def doubtful(self) -> tuple[str, ...]:

@@ -63,7 +63,7 @@ def write_inference_files(
     """
     report = progress or (lambda stage, share: None)
     report("cutting the collision geometry", 0.0)
-    model = simulable_model(inference.model, inference.config)
+    model = simulable_model(inference.model, inference.config, swept=inference.swept)
     write_model(model.robot, folder)
     record = {**inference_record(inference), "collision": model.record(), "files": file_hashes(folder)}
     text = json.dumps(record, indent=1, allow_nan=False)

@@ -116,12 +116,7 @@ def refine(
 
 
 def _refined(inference: Inference, rounds: int, settings: ValidationSettings | None, progress: Progress) -> Refinement:
-    loop = _Loop(
-        inference,
-        rounds,
-        settings or load_settings(),
-        progress,
-    )
+    loop = _Loop(inference, rounds, settings or load_settings(), progress)
     interrupted = False
     try:
         loop.run()
@@ -155,7 +150,12 @@ def repaired(inference: Inference, *, settings: ValidationSettings | None = None
             inference = replace(found.inference, refinement=inference.refinement)
             changes += found.history.changed
     said = [f"{item.part}: {item.what} {item.before} was changed to {item.after}: {item.why}." for item in changes]
-    return replace(inference, warnings=(*inference.warnings, *said)) if said else inference
+    result = replace(inference, warnings=(*inference.warnings, *said)) if said else inference
+    if inference is plan.inference and not (
+        result.closed_chains or any(link.fixed_visuals or link.collision_parts for link in plan.model.links)
+    ):
+        result.swept.update((sweep.travel.joint, sweep) for sweep in verdict.sweeps)
+    return result
 
 
 def _ended(plan: Plan, verdict: MotionVerdict) -> tuple[Plan, list[PlanChange]]:

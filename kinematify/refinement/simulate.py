@@ -96,6 +96,8 @@ class MotionVerdict:
     findings: tuple[Observation, ...]
     joints: tuple[JointSummary, ...]
     """With the free travel of each joint that moves."""
+    sweeps: tuple[JointSweep, ...]
+    """Of the same joints."""
 
 
 class Simulator:
@@ -118,9 +120,7 @@ class Simulator:
     def judge(self, model: KinematicModel, child: str | None = None) -> MotionVerdict:
         """Judge a whole plan, or the joint above one part by its motion alone; a fixed joint has nothing to say."""
         look = GeometryContext(self._scene(model))
-        found: list[Observation] = []
-        if child is None:
-            found = _findings(checks_of("KV30"), look)
+        found = _findings(checks_of("KV30"), look) if child is None else []
         travels = [
             (leader, travel.joint)
             for leader, travel in enumerate(look.scene.travels)
@@ -143,7 +143,9 @@ class Simulator:
                     free_travel=sweep.free,
                 )
             )
-        return MotionVerdict(findings=tuple(found), joints=tuple(summaries))
+        return MotionVerdict(
+            findings=tuple(found), joints=tuple(summaries), sweeps=tuple(self._sweeps[key] for key in keys)
+        )
 
     def _scene(self, model: KinematicModel) -> WorldScene:
         """A plan as the checks see it."""

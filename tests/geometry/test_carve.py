@@ -37,13 +37,27 @@ def rod(radius: float, length: float) -> ConvexPiece:
 
 def slide(moved: int, axis: tuple[float, float, float], upper: float) -> SweptJoint:
     return SweptJoint(
-        moved=frozenset({moved}), turns=False, axis=np.array(axis), pivot=np.zeros(3), lower=0.0, upper=upper
+        moved=frozenset({moved}),
+        against=frozenset({1 - moved}),
+        turns=False,
+        axis=np.array(axis),
+        pivot=np.zeros(3),
+        lower=0.0,
+        upper=upper,
     )
 
 
 def turn(moved: int, pivot: tuple[float, float, float], lower: float, upper: float) -> SweptJoint:
     axis = np.array([0.0, 0.0, 1.0])
-    return SweptJoint(moved=frozenset({moved}), turns=True, axis=axis, pivot=np.array(pivot), lower=lower, upper=upper)
+    return SweptJoint(
+        moved=frozenset({moved}),
+        against=frozenset({1 - moved}),
+        turns=True,
+        axis=axis,
+        pivot=np.array(pivot),
+        lower=lower,
+        upper=upper,
+    )
 
 
 def everywhere(sweep: int, first: int, second: int, sign: float) -> float:

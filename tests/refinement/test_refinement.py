@@ -17,6 +17,7 @@ from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.joints.candidate import JointCandidate, JointEstimate
+from kinematify.model.simulable import simulable_model
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.record import file_hashes, write_inference
@@ -297,3 +298,20 @@ def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
     theirs = [item for item in report.findings if item.check in checks]
     assert sorted((item.check, item.joint) for item in mine) == sorted((item.check, item.joint) for item in theirs)
     assert any(item.severity is Severity.ERROR for item in mine)
+
+
+def test_collision_geometry_is_cut_by_what_simulation_moved() -> None:
+    """As it is where nothing was moved yet; what was found free is not asked again, and other joints are."""
+    bad = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    moved = {sweep.travel.joint: sweep for sweep in Simulator(bad.model, SETTINGS.geometry).judge(bad.model).sweeps}
+    free = {
+        name: replace(sweep, sides=tuple(replace(side, meetings=()) for side in sweep.sides))
+        for name, sweep in moved.items()
+    }
+    anew, known, blind = (simulable_model(bad.model, CONFIG, swept=swept).record() for swept in (None, moved, free))
+    assert anew == known
+    assert anew["blocked"]
+    assert not blind["blocked"]
+    right = loop.repaired(inferred("drawer"))
+    assert set(right.swept) == {joint.name for joint in right.model.joints if joint.kind is not JointType.FIXED}
+    assert not with_joint(right, "drawer", upper=0.1).swept

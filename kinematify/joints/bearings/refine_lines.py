@@ -81,11 +81,6 @@ def sample_spread(sides: Sides) -> float:
     return max(float(np.sqrt(sum(side.points.var(0).sum() for side in sides if len(side.points)))), 1e-12)
 
 
-def across_axis(axis: FloatArray) -> FloatArray:
-    """Two unit vectors across one axis (3,), shape (2, 3)."""
-    return np.concatenate(across_axes(axis[None]))
-
-
 def line_frames(axes: FloatArray) -> FloatArray:
     """Two unit vectors across each axis (L, 3) and the axis, right-handed, shape (L, 3, 3)."""
     return np.stack([*across_axes(axes), axes], axis=1)
