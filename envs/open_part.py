@@ -155,11 +155,6 @@ class OpenPartEnv(OpeningEnv):
             self.world.command(self._command)
         return depth_of(self.world)
 
-    @property
-    def full_force(self) -> float:
-        """Force of a full action, or of the spring at most [N]."""
-        return self.facts.hand.force
-
     def commanded(self, before: FloatArray, hold: FloatArray, action: FloatArray) -> FloatArray:
         """Return what an action commands of the hand, shapes (..., 3): forces in shares, or a place [m].
 

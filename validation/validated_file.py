@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from kinematify.robot.description import Description
     from kinematify.validation.finding import Observation
 
-_OF_LIMITS = ("KV220", "KV801", "KV805")
-"""Checks of limits, which a URDF has to state."""
+_ASKED = {"KV220": ("limit",), "KV801": ("limit",), "KV805": ("limit", "effort"), "KV226": ("effort",)}
+"""What checks ask of a joint that a URDF has to state and the file may not."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +43,8 @@ class ValidatedFile:
     """Line that declares a link or joint, by ``link`` or ``joint`` and its name."""
     form: str | None = None
     """Name of its format; None for a URDF."""
-    endless: frozenset[str] = frozenset()
-    """Slides without limits, which a URDF cannot say."""
+    unstated: frozenset[tuple[str, str]] = frozenset()
+    """What the file does not state of its joints, and a URDF has to (`Description.unstated`)."""
     native: bool = False
     """MuJoCo opens the file itself, and not the URDF that represents it."""
     copy: DocumentCopy | None = None
@@ -56,8 +56,8 @@ class ValidatedFile:
     def of(cls, description: Description) -> ValidatedFile:
         """Look up what every finding needs."""
         if description.form != "urdf":
-            form, endless = description.title, description.endless
-            return cls(lines=description.lines, form=form, endless=endless, native=description.native)
+            form, unstated = description.title, description.unstated
+            return cls(lines=description.lines, form=form, unstated=unstated, native=description.native)
         robot = read_text(description.urdf).robot
         named = () if robot is None else (item for tag in ("link", "joint") for item in robot.iterfind(tag))
         return cls(lines={(str(item.tag), item.get("name") or ""): int(str(item.sourceline)) for item in named})
@@ -71,7 +71,8 @@ class ValidatedFile:
         line = next((line for name in named if (line := self.lines.get(name))), None)
         if self.form is None:
             return replace(finding, line=finding.line or line)
-        if finding.check == "KV104" or (finding.check in _OF_LIMITS and finding.joint in self.endless):
+        made_up = {(what, finding.joint) for what in _ASKED.get(finding.check, ())} & self.unstated
+        if finding.check == "KV104" or made_up:
             return None  # KV104 is about the URDF's text
         if finding.check == "KV201" and self.form == "MJCF":
             return None  # MuJoCo compiles no body that moves without mass; links between joints of one body have none

@@ -61,6 +61,7 @@ def _engines(context: click.Context, parameter: click.Parameter, words: str | No
     is_flag=True,
     help="Also ask whether it rests on a floor in MuJoCo and its motors move its joints there.",
 )
+@click.option("--isaac", is_flag=True, help="Also list names that Isaac Sim changes, and its order of the joints.")
 @click.option(
     "--fail-on",
     type=click.Choice([item.value for item in reversed(Severity)]),

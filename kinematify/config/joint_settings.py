@@ -113,8 +113,6 @@ class LimitsConfig(StageConfig):
     """A panel that has come so near to its body lies on it, ratio of mean distances."""
     lying_deg: float = 30.0  # lower edges of screens dip into their base; handles of bags stop well before half a turn
     """Meshes at the hinge of such a panel may overlap before it gets there, by this angle [deg]."""
-    even: float = 0.25  # knobs with a pointer reach 0.2, levers start at 0.3
-    """A part whose mean lies nearer to its line than this fraction of its reach is even about it: no lever."""
     unstopped_deg: float = 100.0  # arms that are stopped by what is in the mesh stop earlier on one side
     """A lever that turns farther both ways is stopped inside, where it cannot be seen [deg]."""
     lever_deg: float = 45.0  # door handles and flush levers turn by 35 to 50

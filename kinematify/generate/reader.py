@@ -241,7 +241,7 @@ class Sentence:
         k = self.stop
         while k < len(self.units):
             found = _match(_PHRASE, self.roles, k)
-            k = getattr(self, f"_{found.lastgroup}")(found) or found.end()
+            k = max(getattr(self, f"_{found.lastgroup}")(found) or found.end(), k + 1)
         self._lay_out()
 
     def _mean(self, k: int, what: str) -> Any:

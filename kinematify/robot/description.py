@@ -60,8 +60,8 @@ class Description:
     """Line of `path` that declares a link or joint, by ``link`` or ``joint`` and its name; empty for a URDF."""
     notes: tuple[str, ...] = ()
     """What the file holds and the URDF does not, one sentence each."""
-    endless: frozenset[str] = frozenset()
-    """Slides without limits, which a URDF cannot say."""
+    unstated: frozenset[tuple[str, str]] = frozenset()
+    """``limit`` with each slide without limits and ``effort`` with each joint without one: a URDF has to state them."""
     native: bool = False
     """MuJoCo opens `path` itself, and has the same joints there."""
     apart: frozenset[frozenset[str]] = frozenset()
@@ -190,9 +190,10 @@ def open_description(
     # MuJoCo's own names and none of ours, and nothing that moves in other ways.
     ours = any(joint.declared_kind == "ball" or _OUR_NAME.fullmatch(joint.name) for joint in joints)
     native = form == "mjcf" and not ours
-    endless = frozenset(joint.name for joint in robot.joints if joint.kind == "prismatic" and not joint.has_limit)
+    unstated = {("limit", joint.name) for joint in robot.joints if joint.kind == "prismatic" and not joint.has_limit}
+    unstated |= {("effort", joint.name) for joint in robot.joints if joint.effort is None}
     return Description(
-        path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes), endless=endless, native=native,
+        path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes), unstated=frozenset(unstated), native=native,
         apart=robot.apart,
     )  # fmt: skip
 

@@ -319,6 +319,7 @@ _FAR = 1e3
 _HELD = 1e9
 """Inertia of a base that floats, which so stays where it is [kg or kg m^2]; PyBullet is asked for a fixed one."""
 _NO_CONTACTS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT\n"
+_NO_MOTORS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION; "
 _OVERLAP = (
     _LOAD
     + """name = lambda geom: model.body(model.geom_bodyid[geom]).name
@@ -333,7 +334,7 @@ print(min(seen), max(seen))
 )
 _PUSH = (
     _LOAD
-    + """{off}model.opt.gravity[:] = 0.0; seen = [rest[{joint}]]
+    + """{off}{motors}model.opt.gravity[:] = 0.0; seen = [rest[{joint}]]
 moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
 for _ in range({steps}): slow = {speed!r} - data.qvel{v}[{joint}]; \
 push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
@@ -349,7 +350,7 @@ print({farthest}(seen))
 _RELEASE = (
     _LOAD
     + _NO_CONTACTS
-    + """model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel{v}[:] = {speeds}
+    + """{motors}model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel{v}[:] = {speeds}
 seen = [sum(data.energy) for _ in range({steps}) if mujoco.mj_step(model, data) is None]
 print(max(seen) - seen[0])
 """
@@ -415,6 +416,7 @@ class MujocoEngine(Engine):
         self._qpos, self._dof = np.arange(7 * base, model.nq), np.arange(6 * base, model.nv)
         held = "" if file.on_floor else self._hold_still(base)
         self.facts = {"path": path, "held": held, "q": "[7:]" * base, "v": "[6:]" * base}
+        self.facts["motors"] = _NO_MOTORS * bool(model.nu)
         model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
         names = [model.body(k).name.removeprefix(prefix) for k in range(1, model.nbody)]
         self.root = _BASE if file.on_floor else file.root
@@ -489,8 +491,7 @@ class MujocoEngine(Engine):
         gravity: bool = True,
         released: Sequence[int] | None = None,
     ) -> None:
-        """Implement `Engine`; MuJoCo gives a URDF no motors."""
-        del released
+        """Implement `Engine`; the motors of an MJCF are off for all joints where some are released."""
         model, data, option = self.model, self.data, self.model.opt
         option.disableflags, option.gravity[:] = self._flags, self._gravity
         mujoco.mj_resetData(model, data)
@@ -510,6 +511,8 @@ class MujocoEngine(Engine):
             data.qvel[self._dof] = speeds
             mujoco.mj_energyVel(model, data)
         option.disableflags |= 0 if contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        if released and self.facts:
+            option.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION.value
         option.gravity[:] *= gravity
         self._moved = False
 

@@ -173,14 +173,6 @@ class LoadedModel:
         except Unloadable as refusal:
             raise InputError(f"PyBullet does not load {self.path}: {refusal}") from refusal
 
-    def to_pinocchio(self) -> Any:
-        """Return a `pinocchio.Model` of this file, its root fixed to the world.
-
-        Raises:
-            EnvironmentFault: Pinocchio is not installed.
-        """
-        return _engine("pinocchio", "pin").buildModelFromUrdf(str(self.path))
-
     def show(self, q: Mapping[str, float] | None = None, *, port: int = 8080) -> Window[ModelViewer]:
         """Show the model in a browser, as `kinematify view` does; in a notebook the answer is the page itself.
 

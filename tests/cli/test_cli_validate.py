@@ -23,8 +23,8 @@ from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.run.suppression_file import load_suppressions
 from tests.reports import add_checks, finding, full_report, report, result
 
-CONTRACT = {"KV820", "KV821"}
-USUAL = [check for check in CHECKS.values() if not check.id.startswith("KV7") and check.id not in CONTRACT]
+CONTRACT, ISAAC = {"KV820", "KV821"}, {"KV113"}
+USUAL = [check for check in CHECKS.values() if not check.id.startswith("KV7") and check.id not in CONTRACT | ISAAC]
 USUAL_KEYS = keys(USUAL)
 """KV7 runs only with --task."""
 INERTIAL = """<inertial><origin xyz="{x} 0 {z}"/><mass value="2"/>
@@ -253,9 +253,10 @@ def test_choices_reach_the_run(answered: dict[str, Any], chest: Path, tmp_path: 
     assert asked["package_dirs"] == (tmp_path,)
     assert run(["validate", str(chest), "--engines", "none"]) == 0
     assert answered["asked"]["engines"] == ()
-    assert answered["asked"]["selected"] == set(CHECKS) - CONTRACT
-    assert run(["validate", str(chest), "--contract"]) == 0
-    assert answered["asked"]["selected"] == set(CHECKS)
+    assert answered["asked"]["selected"] == set(CHECKS) - CONTRACT - ISAAC
+    for option, left_out in (("--contract", ISAAC), ("--isaac", CONTRACT)):
+        assert run(["validate", str(chest), option]) == 0
+        assert answered["asked"]["selected"] == set(CHECKS) - left_out
 
 
 def test_suppressions_reach_the_run_and_useless_ones_are_named(

@@ -259,3 +259,8 @@ def test_the_nearest_kind_is_taken_on_request_and_said():
     assert made.request.instead_of == "hovercraft bicycle rack"
     assert "built is the nearest" in made.notes[0]
     assert made.facts["request"]["instead_of"]
+
+
+def test_a_motion_that_goes_anywhere_does_not_hang_the_reader():
+    read = read_sentence("overbed table, the top goes anywhere between 70 and 110 cm high")
+    assert read.request.kind

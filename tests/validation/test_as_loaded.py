@@ -456,6 +456,18 @@ def test_the_share_that_keeps_the_contract_has_an_interval() -> None:
     )
 
 
+def test_the_servo_of_an_mjcf_is_off_where_energy_and_limits_are_asked(tmp_path: Path) -> None:
+    path = tmp_path / "arm.xml"
+    path.write_text(
+        """<mujoco><worldbody><body name="post"><geom size=".1"/><body name="arm" pos="0 0 .5"><joint name="hinge"
+        axis="0 0 1" range="-85 85" actuatorfrcrange="-20 20"/><geom type="box" size=".3 .05 .05" pos=".3 0 0"/></body>
+        </body></worldbody><actuator><position joint="hinge" kp="50" ctrlrange="1 1.2"/></actuator></mujoco>"""
+    )
+    report = validate(path, engines=("mujoco",), selected=("KV805", "KV806"), workers=1)
+    asked = {check.check: check.status for check in report.checks if check.engine == "mujoco" and check.check > "KV804"}
+    assert (asked["KV805"], asked["KV806"]) == (Status.PASS, Status.PASS), "its servo would add 25 J"
+
+
 def test_an_mjcf_whose_outer_body_has_no_name_is_placed_as_its_engine_does(tmp_path: Path) -> None:
     outer = '<body><geom type="box" size=".5 .5 .5" mass="1"/>'
     hinge = '<joint name="hinge" axis="1 0 0" range="0 1"/><geom type="box" size=".4 .4 .05" mass="1"/>'

@@ -212,6 +212,18 @@ def test_a_floating_joint_above_everything_is_only_a_note(tmp_path: Path) -> Non
     assert [(f.check, f.joint) for f in findings(results, notes=True)] == [("KV131", "free")]
 
 
+def test_names_and_order_of_joints_that_isaac_sim_changes_are_listed(tmp_path: Path) -> None:
+    more = """<link name="leaf-1"/><link name="leaf.1"/><link name="2nd"/>
+      <joint name="swing" type="continuous"><parent link="base"/><child link="leaf-1"/></joint>
+      <joint name="pinned" type="fixed"><parent link="base"/><child link="leaf.1"/></joint>
+      <joint name="held" type="fixed"><parent link="base"/><child link="2nd"/></joint></robot>"""
+    _, results = check_text(tmp_path, CLEAN.replace("</robot>", more))
+    names, order = next(result.findings for result in results if result.check == "KV113")
+    assert names.severity is Severity.WARNING
+    assert "3 names of links, such as 'leaf-1' to leaf_1; 1 then name others too" in names.message
+    assert "hinge, swing, turn" in order.message, "breadth first; the file goes on with what hangs on the lid"
+
+
 def test_a_circle_of_mimic_joints_names_all_of_them(tmp_path: Path) -> None:
     text = CLEAN.replace('velocity="1"/>', 'velocity="1"/><mimic joint="turn"/>', 1)
     usable, results = check_text(tmp_path, text)

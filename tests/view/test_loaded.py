@@ -75,7 +75,6 @@ def test_engines_get_the_model(urdf: Path) -> None:
     robot = kinematify.load(urdf)
     mujoco_model = robot.to_mujoco()
     assert (mujoco_model.njnt, mujoco_model.nu) == (1, 1)
-    assert robot.to_pinocchio().nq == 1
 
 
 def test_it_is_shown_until_it_is_closed(urdf: Path) -> None:

@@ -149,6 +149,12 @@ class Body:
         """The link that a wrong mass is most likely written at."""
         return max(self.links, key=lambda link: 0.0 if link.inertial is None else link.inertial.mass)
 
+    @property
+    def named(self) -> str:
+        """The heaviest link and how many are fixed to it, for messages about all of them."""
+        others = len(self.links) - 1
+        return f"The link {self.heaviest.name}" + f" with the {others} fixed to it" * bool(others)
+
     @cached_property
     def room(self) -> Room | None:
         """Room of all links together, in the frame of the first."""

@@ -158,7 +158,7 @@ def implausible_masses(result: OpenCheck, physics: Physics) -> None:
             continue
         tiny = body.mass < settings.tiny_mass
         result.find(
-            f"The link {body.heaviest.name} has a mass of {body.mass:g} kg; expected {settings.tiny_mass:g} to "
+            f"{body.named} has a mass of {body.mass:g} kg; expected {settings.tiny_mass:g} to "
             f"{settings.huge_mass:g} kg.",
             "Write the true mass in kilograms; exporters that know no material write a placeholder.",
             link=body.heaviest.name,
@@ -212,7 +212,7 @@ def _largest_volume(room: Room) -> float:
 def _density(result: OpenCheck, body: Body, density: float, limit: float, severity: Severity) -> None:
     heavy = density > limit
     result.find(
-        f"The link {body.heaviest.name} has {body.mass:.4g} kg in a volume that makes {density:.3g} kg/m3 of "
+        f"{body.named} has {body.mass:.4g} kg in a volume that makes {density:.3g} kg/m3 of "
         f"it; {'gold has 19,300' if heavy else 'foam has 30'}, {limit:g} is the limit.",
         "Correct the mass, or the unit of the geometry: "
         + ("it is too heavy or too small." if heavy else "it is too light or too large."),

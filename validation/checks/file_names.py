@@ -1,4 +1,4 @@
-"""KV110 to KV112: names of links and joints."""
+"""KV110 to KV113: names of links and joints, and what Isaac Sim makes of them."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from kinematify.validation.document import Urdf
 
 _HARMFUL = re.compile(r"""[\s<>&"'/\\|*?:;,]""")
+_NO_PRIM = re.compile(r"[^A-Za-z0-9_]|^[0-9]")
+"""What the name of a USD prim does not hold."""
 
 
 @check("KV110", title="Names are present", fails="Names are missing", severity=Severity.ERROR, cause=Cause.ASSET)
@@ -93,6 +95,45 @@ def odd_names(result: OpenCheck, urdf: Urdf) -> None:
             _odd(result, element, f"holds {bad.group()!r}, which paths and other formats give a meaning of its own")
         elif element.tag == "link" and name == "world" and name not in urdf.roots:
             _odd(result, element, "is what MuJoCo calls the fixed world, but the link hangs on a joint")
+
+
+@check(
+    "KV113",
+    title="Isaac Sim keeps names and order of joints",
+    fails="Isaac Sim changes names or order of joints",
+    severity=Severity.NOTE,
+    cause=Cause.ENGINE,
+)
+def of_isaac(result: OpenCheck, urdf: Urdf) -> None:
+    """Only with `--isaac`. Names are names of USD prims as they are, and the joints that turn or slide are in the order
+    of PhysX: breadth first from the root, children in the order of the file. Isaac Sim itself is not run.
+
+    Why it matters: The entries of actions and observations belong to other joints, and prims are not found by name.
+
+    Remedy: Find joints by their names, not by their place, and write names of letters, digits and underscores.
+    """
+    remedy = "Find joints by their names, and write names of letters, digits and underscores."
+    for tag in ("link", "joint"):
+        new = {name: _prim(name) for item in _named(urdf) if item.tag == tag and (name := item.get("name"))}
+        changed = [f"{shown(name)} to {prim}" for name, prim in new.items() if name != prim]
+        same = len(new) - len({*new.values()})
+        if changed:
+            result.find(
+                f"Isaac Sim changes {len(changed)} names of {tag}s, such as {changed[0]}; {same} then name others too.",
+                remedy,
+                severity=Severity.WARNING if same else None,
+            )
+    moving = [edge for edge in urdf.edges if edge.kind in ("revolute", "continuous", "prismatic")]
+    rank = {link: number for number, link in enumerate(urdf.depths(urdf.roots))}
+    order = sorted(moving, key=lambda edge: rank.get(edge.parent, 0))
+    if order != moving:
+        result.find(f"Isaac Sim orders the joints so: {', '.join(edge.name for edge in order)}.", remedy)
+
+
+def _prim(name: str) -> str:
+    """Return the name that the importer of Isaac Sim writes, by its manual ("Conventions" of the URDF importer)."""
+    prim = _NO_PRIM.sub("_", name)
+    return f"a{prim}" if prim != name and prim.startswith("_") else prim
 
 
 def _odd(result: OpenCheck, element: _Element, why: str) -> None:

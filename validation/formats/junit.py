@@ -40,12 +40,9 @@ def as_junit(outcomes: Sequence[Outcome]) -> str:
 
 
 def _fill(suite: _Element, report: ValidationReport) -> None:
-    properties = etree.SubElement(suite, "properties")
-    facts = report.environment
-    for key in ("kinematify", "python", "platform", "seed", "interrupted"):
-        if key in facts:
-            etree.SubElement(properties, "property", name=key, value=printable(str(facts[key])))
-    etree.SubElement(properties, "property", name="verdict", value=report.verdict)
+    facts = etree.SubElement(suite, "properties")
+    for key, value in {**report.environment, "verdict": report.verdict}.items():
+        etree.SubElement(facts, "property", name=key, value=printable(f"{value}"))
     for check in report.checks:
         _add_case(suite, report.model, check)
 

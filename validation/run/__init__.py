@@ -35,7 +35,7 @@ from kinematify.validation.run.needs import (
     needed,
     task_stage,
 )
-from kinematify.validation.run.report import CONTRACT, ValidationReport, environment
+from kinematify.validation.run.report import CONTRACT, ISAAC, ValidationReport, environment
 from kinematify.validation.stage import StageRequest, has_model
 from kinematify.validation.validated_file import ValidatedFile
 from kinematify.versions import require
@@ -75,8 +75,8 @@ def validate(
         path: The file.
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
-        selected: Ids of the checks to run; all but those of the contract if absent. Those of file and meshes always
-            run, and their errors count.
+        selected: Ids of the checks to run; all but those of the contract and of Isaac Sim if absent. Those of file and
+            meshes always run, and their errors count.
         engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
             reported as skipped, with the reason.
         named: The user named the engines: what one of them shows is an error, even if others were not asked.
@@ -143,11 +143,12 @@ _LEEWAY = 20.0
 
 
 def _checks(task: TaskRequest | None, selected: Collection[str]) -> dict[str, Check]:
-    """Checks of the report; those of a task and of the contract only when they were asked for."""
+    """Checks of the report; those of a task, of the contract and of Isaac Sim only when they were asked for."""
     return {
         name: check
         for name, check in CHECKS.items()
-        if (task is not None or not name.startswith("KV7")) and (name in selected or not name.startswith(CONTRACT))
+        if (task is not None or not name.startswith("KV7"))
+        and (name in selected or not name.startswith((CONTRACT, ISAAC)))
     }
 
 

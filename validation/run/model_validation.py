@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from kinematify.config.validation import load_settings
-from kinematify.errors import ConfigError, InputError, KinematifyError, OutputError
+from kinematify.errors import ConfigError, InputError, KinematifyError
 from kinematify.robot.description import form_of
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import CHECKS
@@ -16,7 +16,7 @@ from kinematify.validation.isolation import start_server
 from kinematify.validation.models import find_models
 from kinematify.validation.run import validate as run_checks
 from kinematify.validation.run.needs import needed, stages_of
-from kinematify.validation.run.report import CONTRACT
+from kinematify.validation.run.report import CONTRACT, ISAAC
 from kinematify.validation.run.suppression_file import known_pattern, load_suppressions
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def validate(
     skip: Sequence[str] = (),
     quick: bool = False,
     contract: bool = False,
+    isaac: bool = False,
     engines: Sequence[str] | None = None,
     suppress: str | Path | None = None,
     budget: float | None = None,
@@ -64,11 +65,12 @@ def validate(
         model: URDF, xacro, MJCF, SDF or USD, a folder with one, or a name of robot_descriptions.
         arguments: Of a xacro.
         package_dirs: Where packages lie (``package://``).
-        checks: Only these, ids or patterns such as ``KV3*``; all but those of the contract if empty. Those of file and
-            meshes always run, and their errors count.
+        checks: Only these, ids or patterns such as ``KV3*``; all but those of the contract and of Isaac Sim if
+            empty. Those of file and meshes always run, and their errors count.
         skip: All but these.
         quick: File, meshes, declared physics, each joint in motion by exact geometry, and the file in MuJoCo.
         contract: Also ask whether it rests on a floor in MuJoCo and its motors move its joints there.
+        isaac: Also list names that Isaac Sim changes, and its order of the joints.
         engines: Engines to run; all that are installed if absent, only file and geometry if empty.
         suppress: YAML list of accepted findings with reasons: they do not count.
         budget: Processor time for each stage [s].
@@ -95,7 +97,7 @@ def validate(
     found = find_models([str(model)])
     if len(found) > 1:
         raise InputError(f"{model} holds {len(found)} models. Give one of them, such as {found[0]}.")
-    folders = _existing(package_dirs)
+    folders = _existing("--package-dir", *package_dirs)
     request = None
     if task is not None:
         from kinematify.manipulation.manipulator import robot_of  # noqa: PLC0415 - geometry loads slowly
@@ -104,7 +106,7 @@ def validate(
         request = TaskRequest(
             robot=None if robot is None else Path(robot).absolute(), tool=tool, gripper=tuple(gripper),
             package_dirs=folders, grasp=grasp, base=base, scale=scale,
-            films=None if films is None else _films(Path(films)),
+            films=None if films is None else _existing("--films", films)[0].absolute(),
             stem=f"{found[0].absolute().parent.name}_{found[0].stem}_{task}",
         )  # fmt: skip
         with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
@@ -114,7 +116,7 @@ def validate(
         package_dirs=folders,
         arguments=arguments if form_of(found[0]) == "xacro" else None,
         settings=_settings(config, budget=budget, seed=seed, quick=quick),
-        selected=_selected(checks or (QUICK if quick else ()), skip, contract=contract),
+        selected=_selected(checks or (QUICK if quick else ()), skip, contract=contract, isaac=isaac),
         engines=("mujoco",) if quick else _engines(engines),
         named=not quick,
         suppressions=() if suppress is None else load_suppressions(Path(suppress)),
@@ -126,7 +128,7 @@ def validate(
 
 def start_validation() -> None:
     """Start to load what `validated` needs, on another core than the caller's work."""
-    start_server(needed(stages_of(DEFAULT_ENGINES), _selected(WRITTEN, (), contract=False)))
+    start_server(needed(stages_of(DEFAULT_ENGINES), _selected(WRITTEN, ())))
 
 
 def validated(urdf: Path) -> ValidationReport | KinematifyError:
@@ -137,25 +139,23 @@ def validated(urdf: Path) -> ValidationReport | KinematifyError:
         return error
 
 
-def _films(folder: Path) -> Path:
-    if not folder.is_dir():
-        raise OutputError(f"--films {folder} is no folder. Give a folder that exists.")
-    return folder.absolute()
+def _existing(option: str, *folders: str | Path) -> tuple[Path, ...]:
+    paths = tuple(map(Path, folders))
+    for path in paths:
+        if not path.is_dir():
+            raise InputError(f"{option} {path} is no folder. Give a folder that exists.")
+    return paths
 
 
-def _existing(folders: Sequence[str | Path]) -> tuple[Path, ...]:
-    for folder in folders:
-        if not Path(folder).is_dir():
-            raise InputError(f"--package-dir {folder} is no folder. Give the folder of a package, or of packages.")
-    return tuple(map(Path, folders))
-
-
-def _selected(checks: Sequence[str], skip: Sequence[str], *, contract: bool) -> frozenset[str]:
-    parts, wanted = _matching([f"{CONTRACT}*"]), _matching(checks or ["*"])
-    if contract:
-        wanted |= parts
-    elif not any(CONTRACT in word.upper() for word in checks):
-        wanted -= parts
+def _selected(
+    checks: Sequence[str], skip: Sequence[str], *, contract: bool = False, isaac: bool = False
+) -> frozenset[str]:
+    wanted = _matching(checks or ["*"])
+    for family, asked in ((CONTRACT, contract), (ISAAC, isaac)):
+        if asked:
+            wanted |= _matching([f"{family}*"])
+        elif not any(family in word.upper() for word in checks):
+            wanted -= _matching([f"{family}*"])
     left = wanted - _matching(skip)
     if not left:
         raise InputError(

@@ -29,8 +29,8 @@ SCHEMA = 2
 _Z = 1.96
 """Of an interval of 95 %."""
 _OPENS, _MOVES = "KV801", "KV804"
-CONTRACT = "KV82"
-"""Begin of the ids of the contract for objects."""
+CONTRACT, ISAAC = "KV82", "KV113"
+"""Begin of the ids of the contract for objects, and id of what Isaac Sim makes of a file: both run when asked for."""
 _PACKAGES = (
     "numpy", "scipy", "trimesh", "libigl", "python-fcl", "mujoco", "pybullet", "pin",
 )  # fmt: skip

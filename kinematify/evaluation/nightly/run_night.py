@@ -4,7 +4,7 @@
 results/nightly/
   index.html                 all nights, a line each
   baseline.json              name of the accepted night, which later ones are compared with
-  2026-01-31-0a1b2c3/        night.json  runs.jsonl  junit.xml  index.html
+  2026-01-31-0a1b2c3/        night.json  runs.jsonl  index.html
   .unfinished/  .lock        of the night that is running, not for the history
 ```
 
@@ -33,7 +33,7 @@ from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.benchmark_job import INFER
 from kinematify.evaluation.datasets import find_objects, matching
 from kinematify.evaluation.nightly.comparison import CHANGES, Night, compare, counts
-from kinematify.evaluation.nightly.night_pages import as_junit, night_page, nights_page
+from kinematify.evaluation.nightly.night_pages import night_page, nights_page
 from kinematify.evaluation.nightly.runs import PULLED, RUN, SCHEMA, ModelJob, Run, accuracy_run, digest, validation_run
 from kinematify.evaluation.result_record import code_version, git_commit, replace_text
 from kinematify.evaluation.run_benchmark import Variant, run_benchmark
@@ -286,7 +286,6 @@ def _write(folder: Path, night: Night, earlier: Sequence[Night]) -> Path:
     facts = {**night.header, "gate": night.gate, "changes": CHANGES.dump_python(night.changes, mode="json")}
     files = {
         "runs.jsonl": "".join(RUN.dump_json(run).decode() + "\n" for run in night.runs),
-        "junit.xml": as_junit(night),
         "index.html": night_page(night),
         "night.json": json.dumps(facts, indent=1, allow_nan=False) + "\n",
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from kinematify.config import ServiceConfig
 
 _TOO_MANY, _BUSY = 429, 503
+_LOCAL = "localhost", "127.0.0.1"
 _EXCERPT = 200  # characters of an answer that is not understood
 
 
@@ -42,7 +42,7 @@ class Service:
         parts = urlsplit(self.url)
         if parts.scheme not in ("http", "https") or not parts.hostname:
             raise InputError(f"{self.url!r} is no address of {self.name}. Give one like https://HOST/v1.")
-        if parts.scheme != "https" and self.key and not _is_local(parts.hostname):
+        if parts.scheme != "https" and self.key and parts.hostname not in _LOCAL:
             raise InputError(
                 f"The address {self.url} of {self.name} is not https, so that the key would be sent readably. Correct "
                 "the address."
@@ -133,13 +133,6 @@ class Service:
         text = " ".join(answer.text.split())[:_EXCERPT]
         text = text.replace(self.key, "***") if self.key else text
         return text or "an empty answer"
-
-
-def _is_local(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
 
 
 def _retry_after(answer: httpx.Response) -> float:
