@@ -90,7 +90,7 @@ _OPPOSITE = {"left": "right", "right": "left"}
 
 
 def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
-    """Read a sentence; nothing is built.
+    """Read a sentence; the usual object is built where a bare size has no named dimension.
 
     Args:
         text: English.
