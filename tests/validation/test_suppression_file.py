@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from kinematify.errors import InputError
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Suppression
 from kinematify.validation.run.conclusion import concluded
 from kinematify.validation.run.suppression_file import load_suppressions, unused_suppressions
@@ -80,3 +81,10 @@ def test_rules_that_cover_nothing_are_named() -> None:
     used = Suppression(check="KV3*", where="hinge_1", reason="soft")
     unused = Suppression(check="KV396", where="hinge_2", reason="soft")
     assert unused_suppressions([used, unused], [report(), report(result(finding()))]) == (unused,)
+
+
+@pytest.mark.parametrize("gone", ["KV405", "KV144", "KV155", "KV209", "KV304", "KV340", "KV350"])
+def test_a_rule_for_a_check_of_an_earlier_release_is_no_error(tmp_path: Path, gone: str) -> None:
+    (rule,) = load_suppressions(written(tmp_path, f"- {{check: {gone}, reason: soft seal}}"))
+    assert rule.check == gone
+    assert gone not in CHECKS
