@@ -117,11 +117,11 @@ class Finding(Observation):
     """Finding that it follows from and is reported under; it has no cause itself."""
 
 
-Told = TypeVar("Told", bound=Observation)
+Content = TypeVar("Content", bound=Observation)
 
 
 @dataclass(frozen=True, kw_only=True)
-class CheckResult(Generic[Told]):
+class CheckResult(Generic[Content]):
     """The outcome of one check in one engine: with observations when the check ends, with findings in a report."""
 
     check: str
@@ -131,7 +131,7 @@ class CheckResult(Generic[Told]):
     reason: str | None = None
     """Why it was skipped, blocked or not finished."""
     seconds: float = 0.0
-    findings: tuple[Told, ...] = ()
+    findings: tuple[Content, ...] = ()
     measured: Mapping[str, float] = field(default_factory=dict)
     """Named figures worth reading even where nothing is wrong, e.g. the largest tracking error."""
 

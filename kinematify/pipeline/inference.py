@@ -136,7 +136,7 @@ class Inference:
 
     @cached_property
     def swept(self) -> dict[str, JointSweep]:
-        """Motions of its joints that were simulated; a copy with other joints has to be simulated anew."""
+        """Motions of its joints that were simulated; a copy with other joints has to be simulated again."""
         return {}
 
     @property

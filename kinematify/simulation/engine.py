@@ -71,7 +71,7 @@ class Engine(Protocol):
         gravity: bool = True,
         released: Sequence[int] | None = None,
     ) -> None:
-        """Set everything and begin anew.
+        """Set everything and start a run.
 
         Args:
             values: Of all joints [rad or m].

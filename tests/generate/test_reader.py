@@ -263,4 +263,5 @@ def test_the_nearest_kind_is_taken_on_request_and_said():
 
 def test_a_motion_that_goes_anywhere_does_not_hang_the_reader():
     read = read_sentence("overbed table, the top goes anywhere between 70 and 110 cm high")
-    assert read.request.kind
+    assert read.request.kind == "overbed_table"
+    assert read.made().unread == ("goes anywhere between 70 and 110 cm",)

@@ -308,9 +308,9 @@ def test_collision_geometry_is_cut_by_what_simulation_moved() -> None:
         name: replace(sweep, sides=tuple(replace(side, meetings=()) for side in sweep.sides))
         for name, sweep in moved.items()
     }
-    anew, known, blind = (simulable_model(bad.model, CONFIG, swept=swept).record() for swept in (None, moved, free))
-    assert anew == known
-    assert anew["blocked"]
+    fresh, known, blind = (simulable_model(bad.model, CONFIG, swept=swept).record() for swept in (None, moved, free))
+    assert fresh == known
+    assert fresh["blocked"]
     assert not blind["blocked"]
     right = loop.repaired(inferred("drawer"))
     assert set(right.swept) == {joint.name for joint in right.model.joints if joint.kind is not JointType.FIXED}

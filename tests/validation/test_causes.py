@@ -33,7 +33,7 @@ def found(check: str, severity: Severity = Severity.WARNING, **about: object) ->
     """A check with one observation, which alone can become a finding."""
     engine = next(iter(CHECKS[check].engines), None)
     fields = {"check": check, "severity": severity, "cause": Cause.PHYSICS, "engine": engine, **about}
-    seen = Observation(message=f"Told by {check}.", remedy="Mend it.", **fields)  # type: ignore[arg-type]
+    seen = Observation(message=f"Found by {check}.", remedy="Repair it.", **fields)  # type: ignore[arg-type]
     return CheckResult(check=check, engine=engine, status=Status.FAIL, findings=(seen,))
 
 
@@ -115,7 +115,7 @@ def test_all_formats_tell_a_cause_once() -> None:
     assert result["message"]["text"].endswith("Follows from it: KV804 [mujoco].")
     suite = etree.fromstring(as_junit([report]).encode())
     assert suite.get("failures") == "1"
-    assert "Follows from: Told by KV301." in suite.findtext(".//testcase[2]/system-out")
+    assert "Follows from: Found by KV301." in suite.findtext(".//testcase[2]/system-out")
     page = as_html([report], {})
     assert page.count('class="finding ') == 1
     assert "Follows from it: KV804 [mujoco]" in page

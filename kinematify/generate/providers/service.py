@@ -36,7 +36,7 @@ class Service:
     key_name: str
     """Environment variable that holds the key, for messages."""
     report: Callable[[str], None] = lambda words: None
-    """Told why it is asked again, and when."""
+    """It gets the reason of each repeated request, and when it is sent."""
 
     def __post_init__(self) -> None:
         parts = urlsplit(self.url)

@@ -1,9 +1,8 @@
 """The two small networks of the fitted choice, evaluated in numpy; what fitted them is not needed.
 
 The first reads what is measured of all hypotheses of an edge at once. Each is embedded on its own; the mean and the
-greatest of what all of them say is beside it when it is scored (deep sets, Zaheer et al. 2017). It is asked twice,
-with what the weighted cues say and without, and several networks that began elsewhere are averaged, all in log
-probability.
+greatest of what all of them say is beside it when it is scored (deep sets, Zaheer et al. 2017). Several
+networks that began elsewhere are averaged in log probability.
 
 The second looks at points of both parts, as each joint moves them. For every hypothesis the points of an edge are put
 into the frame of its line, so that what is learned holds whichever way an object stands: along the line, out to the
