@@ -148,6 +148,21 @@ def test_parts_and_joints_may_stand_in_any_order():
     assert described_blueprint(values).root == "body"
 
 
+def test_shapes_and_joints_may_list_their_first_fields():
+    values = yaml.safe_load(EXAMPLE)
+    box = {"box": [0.4, 0.2, 0.15], "xyz": [0, 0, 0.075]}
+    values["parts"][0]["shapes"] = [box]
+    values["joints"] = [{"revolute": ["body", "lid", 0, 1.9], "axis": "-x", "pivot": [0, 0.1, 0.151]}]
+    one, other = described_blueprint(yaml.safe_load(EXAMPLE)), described_blueprint(values)
+    np.testing.assert_array_equal(one.parts[0].vertices, other.parts[0].vertices)
+    assert one.joints[0].axis.tolist() == other.joints[0].axis.tolist() == [-1, 0, 0]
+    assert (one.joints[0].upper, one.joints[0].kind) == (other.joints[0].upper, other.joints[0].kind)
+    ball = one_shape({"sphere": 0.2}).vertices
+    np.testing.assert_array_equal(ball, one_shape({"kind": "sphere", "radius": 0.2}).vertices)
+    with pytest.raises(InputError, match=r"parts.1.shapes.0: .*cylinder takes a list of radius, length, but it is 0.1"):
+        one_shape({"cylinder": 0.1})
+
+
 def test_yaml_and_json_say_the_same(tmp_path):
     (tmp_path / "a.yaml").write_text(EXAMPLE)
     (tmp_path / "a.json").write_text(json.dumps(yaml.safe_load(EXAMPLE)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, pi
+from math import cos, hypot, pi, sin
 from typing import Any
 
 from manifold3d import Manifold
@@ -11,12 +11,12 @@ from manifold3d import Manifold
 from kinematify.generate.library import mechanisms
 from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, share, whole
-from kinematify.generate.library.mechanisms import button, knob, lever, star_wheel
+from kinematify.generate.library.mechanisms import button, knob, lever
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
-from kinematify.generate.procedural.solids import Point, X, Y, box, cylinder, slab, tray, union
+from kinematify.generate.procedural.solids import Point, X, Y, Z, box, cylinder, slab, tray, union, vector
 from kinematify.generate.procedural.workshop import Workshop
 
 
@@ -540,7 +540,15 @@ def safe(
     length = min(0.12, 0.22 * size)
     if handle == "wheel":
         with drawn_on(w, clearance) as b:
-            star_wheel(b, "handle", "door", place, length, -Y, 3, 0.5 * pi)
+            at, wire, gap = vector(*place), 0.1 * length, b.gap(length)
+            level = at - (gap + 3.0 * wire) * Y
+            for angle in (0, 2 * pi / 3, 4 * pi / 3):
+                tip = level + length * (cos(angle) * Z + sin(angle) * X)
+                b.part("handle", b.rod(0.8 * wire, level, tip), look="metal")
+            b.part("handle", b.cylinder(1.5 * wire, at - gap * Y, level))
+            b.cut("door", b.cylinder(wire + 1.5 * b.gap(wire), at + 2.0 * wire * Y, at - wire * Y))
+            b.part("handle", b.cylinder(wire, at + (2.0 * wire - gap) * Y, at - (gap + 0.2 * wire) * Y))
+            b.hinge("handle", "door", Y, at, 0.5 * pi)
     else:
         with drawn_on(w, clearance) as b:
             lever(b, "handle", "door", place, -Y, X, 1.2 * length, reach=-0.5 * pi)

@@ -128,9 +128,10 @@ def knob(
     top = at + high * out
     side = _across(out, (1.0, 1.0))[1]
     d.part(name, look=material)
-    if d.style.has_bore:
-        _shaft(d, name, parent, at, 0.3 * radius, out, deep or 0.6 * high, gap)
-        foot = at + gap * out
+    if d.style.has_bore:  # it turns in a hole of its parent
+        shaft, deep, foot = 0.3 * radius, deep or 0.6 * high, at + gap * out
+        d.cut(parent, d.cylinder(shaft + 1.5 * d.gap(shaft), at - deep * out, at + shaft * out))
+        d.part(name, d.cylinder(shaft, at - (deep - max(gap, 1e-3 * deep)) * out, at + (gap + 0.2 * shaft) * out))
     kind = d.style.knob
     if kind == "bar":
         d.part(
@@ -154,15 +155,6 @@ def knob(
         d.spin(name, parent, -out, at)
     else:
         d.hinge(name, parent, -out, at, reach)
-
-
-def _shaft(
-    d: ObjectBuilder, name: str, parent: str, at: FloatArray, radius: float, out: FloatArray, deep: float, gap: float
-) -> None:
-    """Make a part that stands `gap` before its parent turn in a hole of it, where this hand makes holes."""
-    if d.style.has_bore:
-        d.cut(parent, d.cylinder(radius + 1.5 * d.gap(radius), at - deep * out, at + radius * out))
-        d.part(name, d.cylinder(radius, at - (deep - max(gap, 1e-3 * deep)) * out, at + (gap + 0.2 * radius) * out))
 
 
 def button(
@@ -381,21 +373,6 @@ def caster(
         d.part(fork, beam(0.5 * radius, 0.3 * wide, np.array([leg[0], leg[1], plate[2]]), leg - 0.3 * radius * Z, Y))
     d.spin(fork, parent, Z, at)
     d.spin(name, fork, Y, axle)
-
-
-def star_wheel(
-    d: ObjectBuilder, name: str, parent: str, at: Point, radius: float, out: FloatArray, spokes: int, reach: float
-) -> None:
-    """Spokes on a shaft, turned clockwise by `reach` [rad]."""
-    at = np.asarray(at, dtype=np.float64)
-    wire, gap = 0.1 * radius, d.gap(radius)
-    level, side = at + (gap + 3.0 * wire) * out, _across(out, (1.0, 1.0))[1]
-    for angle in np.arange(spokes) * 2.0 * np.pi / spokes:
-        tip = level + radius * (np.cos(angle) * side + np.sin(angle) * np.cross(side, out))
-        d.part(name, d.rod(0.8 * wire, level, tip), look="metal")
-    d.part(name, d.cylinder(1.5 * wire, at + gap * out, level))
-    _shaft(d, name, parent, at, wire, out, 2.0 * wire, gap)
-    d.hinge(name, parent, -out, at, reach)
 
 
 def crank(

@@ -32,11 +32,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 import yaml
 from manifold3d import Manifold
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import BlueprintJoint, parents_first
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.parameter import pairs
 from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, lathe, ring, rounded_block, section, union
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.joint_type import JointType
@@ -59,6 +60,14 @@ LARGEST_FILE = 2_000_000
 """[bytes]."""
 MIRRORS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 """Normals of planes that things are mirrored across, by axis."""
+_AXES = {**MIRRORS, "-x": (-1.0, 0.0, 0.0), "-y": (0.0, -1.0, 0.0), "-z": (0.0, 0.0, -1.0)}
+_SHORT = pairs(
+    "box size|rounded_box size radius|cylinder radius length|capsule radius length|rod radius ends|sphere radius"
+    "|cone radius top_radius length|tube radius inner_radius length|torus radius wire_radius|prism outline length"
+    "|lathe outline|revolute parent child lower upper|prismatic parent child lower upper|continuous parent child"
+    "|fixed parent child"
+)
+"""Kind of shape or joint -> its first fields, which may be listed under its name."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _SHOWN = 5  # problems of a file that are shown at once
 
@@ -74,6 +83,19 @@ class _Described(BaseModel):
     """Unknown fields and numbers that are not finite are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def _in_full(values: Any) -> Any:
+    """Name the fields of a shape or a joint: {cylinder: [0.1, 0.5]} is {kind: cylinder, radius: 0.1, length: 0.5}."""
+    short = next((name for name in _SHORT if name in values), "") if isinstance(values, dict) else ""
+    if not short:
+        return values
+    fields, others = _SHORT[short].split(), dict(values)
+    given = others.pop(short)
+    listed = given if len(fields) > 1 else [given]
+    if not isinstance(listed, list) or len(listed) != len(fields):
+        raise ValueError(f"{short} takes a list of {', '.join(fields)}, but it is {given}")
+    return {"type" if "parent" in fields else "kind": short, **dict(zip(fields, listed, strict=True)), **others}
 
 
 class Repetition(_Described):
@@ -301,7 +323,7 @@ class LatheShape(_Round):
         return lathe(self.outline, segments=self.sides)
 
 
-Primitive = Annotated[
+_Primitive = (
     BoxShape
     | RoundedBoxShape
     | CylinderShape
@@ -312,9 +334,9 @@ Primitive = Annotated[
     | TubeShape
     | TorusShape
     | PrismShape
-    | LatheShape,
-    Field(discriminator="kind"),
-]
+    | LatheShape
+)
+Primitive = Annotated[_Primitive, Field(discriminator="kind"), BeforeValidator(_in_full)]
 
 
 class HullShape(_Placed):
@@ -327,7 +349,7 @@ class HullShape(_Placed):
         return hull(*(shape.solid({}) for shape in self.shapes))
 
 
-Shape = Annotated[Primitive | HullShape, Field(discriminator="kind")]
+Shape = Annotated[_Primitive | HullShape, Field(discriminator="kind"), BeforeValidator(_in_full)]
 
 
 class PartDescription(_Described):
@@ -385,8 +407,8 @@ class JointDescription(_Described):
     type: Literal["revolute", "continuous", "prismatic", "fixed"]
     parent: Name
     child: Name
-    axis: Vector = (0.0, 0.0, 1.0)
-    """Direction in the world frame, of any length; positive motion opens, by the right hand rule or along it."""
+    axis: Annotated[Vector, BeforeValidator(lambda axis: _AXES[axis] if str(axis) in _AXES else axis)] = (0.0, 0.0, 1.0)
+    """Direction in the world frame, of any length, or x to -z; positive opens, by the right hand rule or along it."""
     pivot: Vector = (0.0, 0.0, 0.0)
     """A point on the axis, world frame [m]; of no effect where the joint does not turn."""
     lower: float | None = Field(None, ge=-LARGEST, le=LARGEST)
@@ -395,6 +417,8 @@ class JointDescription(_Described):
     value: float = Field(0.0, ge=-LARGEST, le=LARGEST)
     """At which it is shown [rad or m]; a joint that follows another one stands where that one puts it."""
     mimic: MimicDescription | None = None
+
+    _named = model_validator(mode="before")(_in_full)
 
     @field_validator("axis")
     @classmethod
