@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import combinations, permutations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,11 +38,12 @@ _AXES = {"width": 0, "depth": 1, "height": 2}
 _SAME = 0.02  # of a size or a range, by which it may be off
 _ASIDE = 0.02  # of the whole, by which a part is beside its middle
 _UPRIGHT, _LEVEL = 0.95, 0.2  # of the z component of an axis
-_LARGER = 5.0  # times as large or as small as usual the whole may be
+_LARGER = 30.0  # times as large or as small as usual the whole may be: toys
 _ROUND = 0.06  # of a side, by which two sides of what is round differ
 _FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cylinder 0.785
 _SHOWN = 0.5  # of the surface, that has the look of the whole at least
 _TOWARDS = 0.3  # of a way, that leads to a side
+_DARK = 0.4  # brightness of what is dark at most
 _GAP = 0.05  # between several [m]
 _OWN_LOOK = ("rubber", "glass", "mirror")
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
@@ -52,13 +53,14 @@ _JOINTS = words_of("hinge slide tilt pan spin")
 """Nouns that mean what moves so where no part is called so: what moves most of the object."""
 _ALIKE = pairs(
     "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
-    "cab cabin house|cabin cab house|boom jib|sail blade rotor|wing leaf|screen display lid|display screen|dial knob|"
+    "cab cabin house|cabin cab house|boom jib|sail blade rotor|blade rotor|wing leaf|screen display lid|"
+    "display screen|dial knob|"
     "handle lever|lever handle|arm lever|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|"
     "spout neck|rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|"
-    "cymbal top|swing seat"
+    "cymbal top|swing seat|foot base stand|stand base|pedestal base|disc base"
 )
 """Noun -> what it may be where no part is called so."""
-_BASE = words_of("body base frame housing case casing")
+_BASE = words_of("body base frame housing case casing cabinet")
 """Nouns that mean the base link where no part is called so."""
 _APART = words_of("door drawer wheel lid flap window knob button shelf tray seat")
 """Nouns of parts that are bodies of their own, each; several pedals, legs or tines may be one."""
@@ -75,6 +77,8 @@ class BuildResult:
     """What was asked for and is otherwise, one line each."""
     missing: tuple[str, ...] = ()
     """Names of parts of the request that the object does not have."""
+    unmeasured: tuple[str, ...] = ()
+    """Those and names of details of a body, or of what another name of the request means: nothing of them is known."""
     unread: tuple[str, ...] = ()
     """Words of a sentence that were not read, and that may matter."""
     notes: tuple[str, ...] = ()
@@ -99,9 +103,11 @@ def names_called(family: Kind, blueprint: Blueprint, noun: str) -> list[str]:
     picked = [word for word in words[:-1] if word in _PICKED or word in _ORDINALS]
     found: list[Part] = []
     for plain in (words, [word for word in words if word not in picked], words[-1:]):
-        if found := _called(family, blueprint, " ".join(plain)):
+        found = _called(family, blueprint, " ".join(plain))
+        if found and (len(plain) == len(words) - len(picked) or len({stem_of(part.name) for part in found}) == 1):
             picked = picked if plain is not words else []
             break
+        found = []
     for word in picked:
         if word in _ORDINALS:
             found.sort(key=lambda part: tuple(np.round(part.bounds.mean(axis=0)[[2, 0]], 3) * (-1, 1)))
@@ -109,7 +115,7 @@ def names_called(family: Kind, blueprint: Blueprint, noun: str) -> list[str]:
         elif len(found) == 1:
             found = found if is_at(blueprint, [found[0].name], _PICKED[word]) else []
         elif found:
-            axis, sign = _SIDES[_PICKED[word]]
+            axis, sign = _side(blueprint, _PICKED[word])
             places = [sign * float(part.bounds.mean(axis=0)[axis]) for part in found]
             middle = 0.5 * (min(places) + max(places))
             if max(places) - min(places) < _ASIDE:
@@ -168,20 +174,20 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
     if fitted := _refitted(family, made, request):
         with suppress(InputError):
             made = build(family, {**values, **fitted}, seed=seed)
-    made = _sized(made, request, faults)
+    made = _sized(made, request)
     made, shown = _painted(made, *(str(request.parameters.get(look, "")) for look in ("material", "color")))
     if shown < _SHOWN:
         faults.append(f"look of the whole: as asked for on {100 * shown:.0f} % of the surface")
     if _mirror_helps(family, made, request):
         made = made.scaled(1.0, mirrored=True)
-    missing = []
+    missing, unmeasured = list[str](), list[str]()
     for noun, part in request.parts.items():
         names = names_called(family, made, noun)
         if names:
             made = _adjusted(made, noun, names, part)
         elif part.count != 0 and not _is_detail(family, noun, made):
             missing.append(noun)
-    faults += _faults(family, made, request, missing)
+    faults += _faults(family, made, request, missing, unmeasured)
     if request.copies > 1:
         made = made.repeated(request.copies, float(np.ptp(closed(made).assembly.bounds, axis=0)[0]) + _GAP)
     return BuildResult(
@@ -189,6 +195,7 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
         request=request,
         differences=tuple(dict.fromkeys(faults)),
         missing=tuple(missing),
+        unmeasured=(*missing, *unmeasured),
         facts={"request": request.model_dump(mode="json", exclude_defaults=True)},
     )
 
@@ -215,7 +222,7 @@ def _values(family: Kind, request: Request, faults: list[str]) -> Iterator[tuple
         wanted += [
             (name, f"{size} of the {noun}", value)
             for size, value in part.size.items()
-            for name in _length_names(family, noun, size)
+            for name in length_names(family, noun, size)
         ]
         if noun.split()[-1] in ("handle", "knob", "pull", "grip") and "handle" in known:
             wanted += [(f"handle_{look}", look, getattr(part, look)) for look in ("color", "material")]
@@ -227,7 +234,7 @@ def _values(family: Kind, request: Request, faults: list[str]) -> Iterator[tuple
             yield name, checked(family, name, value)
         except InputError as error:
             # the whole is scaled where no parameter reaches so far, and a part is measured
-            if said not in request.size and not said.startswith("length of"):
+            if said not in request.size and not said.startswith(("length of", "number of")):
                 faults.append(f"{said}: {str(error).rstrip('.')}")
 
 
@@ -246,8 +253,8 @@ def _is_detail(family: Kind, noun: str, made: Blueprint) -> bool:
     return any(noun.rsplit(maxsplit=1)[-1] in said for said in chosen if said[1] not in ("none", "no"))
 
 
-def _length_names(family: Kind, noun: str, size: str) -> list[str]:
-    """Parameters that are a size of a part: ``door_height``, or ``blade`` for its length."""
+def length_names(family: Kind, noun: str, size: str) -> list[str]:
+    """Return parameters that are a size of a part: ``door_height``, or ``blade`` for its length."""
     own = noun.replace(" ", "_")
     lengths = {item.name for item in family.parameters if item.unit == "m"}
     return [name for name in (f"{own}_{size}", own * (size == "length")) if name in lengths][:1]
@@ -280,11 +287,24 @@ def _refitted(family: Kind, made: Blueprint, request: Request) -> dict[str, Valu
     return found
 
 
-def main_size(family: Kind) -> str:
-    """Return the size that a bare one means: its length, its only one, or the largest of the object as it is usual."""
+def sides_meant(family: Kind, lengths: Sequence[float]) -> Sequence[str]:
+    """Return the names of some lengths of the whole [m] of which none is said.
+
+    A single one is its length, its only size, or the largest of the object as it is usual. Of several, the width is
+    first, unless another order fits the proportions of the kind much better.
+    """
     known = [item.name for item in family.parameters if item.name in (*_AXES, "length", "diameter")]
-    extents = np.ptp(closed(build(family, {})).assembly.bounds, axis=0)
-    return "length" if "length" in known else known[0] if len(known) == 1 else [*_AXES][extents.argmax()]
+    extents = dict(zip(_AXES, np.ptp(closed(build(family, {})).assembly.bounds, axis=0), strict=True))
+    if len(lengths) == 1:
+        usual = known[0] if len(known) == 1 else max(extents, key=extents.__getitem__)
+        return ["length" if "length" in known else usual]
+    first = ("width", "height") if len(lengths) == 2 and "depth" not in known else tuple(_AXES)[: len(lengths)]
+
+    def misfit(names: tuple[str, ...]) -> float:
+        off = sum(abs(math.log(far / extents[name])) for name, far in zip(names, lengths, strict=True))
+        return off + 0.5 * (names != first)
+
+    return min(permutations(_AXES, len(lengths)), key=misfit)
 
 
 def fits_size(made: Blueprint, size: str, wanted: float) -> bool:
@@ -292,7 +312,7 @@ def fits_size(made: Blueprint, size: str, wanted: float) -> bool:
     return any(_same(wanted, there) for there in _sizes(made, size))
 
 
-def _sized(made: Blueprint, request: Request, faults: list[str]) -> Blueprint:
+def _sized(made: Blueprint, request: Request) -> Blueprint:
     """Scale the whole where no parameter made a size of it as asked for."""
     factors = [
         wanted / there
@@ -303,7 +323,6 @@ def _sized(made: Blueprint, request: Request, faults: list[str]) -> Blueprint:
         return made
     factor = factors[0]
     if not 1.0 / _LARGER <= factor <= _LARGER:
-        faults.append(f"size: it can be {_LARGER:g} times as large or as small as usual, not {factor:.3g} times")
         return made
     alone = len(factors) == len(request.size) and all(_same(factor, other) for other in factors)
     return made.scaled(factor) if alone else made
@@ -457,7 +476,9 @@ def _ranged(blueprint: Blueprint, names: Sequence[str], wanted: tuple[float, flo
 # ---- measuring -----------------------------------------------------------------------------------------------------
 
 
-def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[str]) -> Iterator[str]:
+def _faults(
+    family: Kind, made: Blueprint, request: Request, missing: Sequence[str], unmeasured: list[str]
+) -> Iterator[str]:
     kind = family.title
     for name, wanted in request.size.items():
         if not fits_size(made, name, wanted):
@@ -470,7 +491,11 @@ def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[s
             yield f"{noun}: {'an' if kind[0] in 'aeiou' else 'a'} {kind} has none; it has {listed(has[:12])}"
             continue
         names = names_called(family, made, noun)
-        yield from (f"{noun}: {why}" for why in part_faults(family, made, noun, names, part))
+        faults = list(part_faults(family, made, noun, names, part))
+        is_detail = len(names) < 2 <= (part.count or 0) and noun.rsplit(maxsplit=1)[-1] not in _APART
+        if faults and (not names or (is_detail and not count_parameter(family, noun))):
+            unmeasured.append(noun)
+        yield from (f"{noun}: {why}" for why in faults)
         if part.row and names:
             rows.append((part.row, noun, _boxes(made, names).mean(axis=1)[:, 2]))
         meant.append((noun, set(names)))
@@ -479,6 +504,7 @@ def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[s
             yield f"{one}: not above the {other}"
     for (one, mine), (other, its) in combinations(meant, 2):
         if mine and mine == its and not {one, other} & set(_JOINTS):
+            unmeasured.append(other)
             yield f"{other}: it is the same as the {one}, {listed(sorted(mine)[:4])}"
 
 
@@ -557,6 +583,39 @@ def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) ->
     return bool(along[0] == columns and along[1:].max() == rows)
 
 
+def has_sides(made: Blueprint, names: Sequence[str], sides: Sequence[float]) -> bool:
+    """Return True if each of some parts has sides that are so long [m], in any direction."""
+    return all(
+        any(all(map(_same, sides, some)) for some in permutations(box, len(sides)))
+        for box in np.ptp(_boxes(made, names), axis=1)
+    )
+
+
+def stands_at(made: Blueprint, names: Sequence[str], levels: tuple[float, float]) -> bool:
+    """Return True if the upper or lower end of parts is so high [m] where they begin and where they end to move."""
+    shut = closed(made)
+    heights = [
+        next(part for part in shut.moved({name: way}).parts if part.name == name).bounds[:, 2]
+        for name, joint in ((name, shut.joint_above[name]) for name in names if name in shut.joint_above)
+        for way in (joint.lower, joint.upper)
+        if math.isfinite(way)
+    ]
+    low, high = np.min(heights, axis=0, initial=np.inf), np.max(heights, axis=0, initial=-np.inf)
+    return any(_same(levels[0], low[end]) and _same(levels[1], high[end]) for end in (0, 1)) if heights else False
+
+
+def has_shade(made: Blueprint, names: Sequence[str], shade: str) -> bool:
+    """Return True if parts are dark or light, as the eye sees it."""
+    grey = [float(np.dot(part.color or 0.5, (0.299, 0.587, 0.114))) for part in made.parts if part.name in names]
+    return all(value < _DARK if shade == "dark" else value > _DARK for value in grey)
+
+
+def is_coupled(made: Blueprint, names: Sequence[str]) -> bool:
+    """Return True if one joint leads all those of some parts."""
+    joints = [made.joint_above[name] for name in names if name in made.joint_above]
+    return len({joint.mimic.leader if joint.mimic else joint.child for joint in joints}) == 1
+
+
 def on_both_sides(made: Blueprint, names: Sequence[str]) -> bool:
     """Return True if as many of some parts are left of the middle as right of it."""
     middle = closed(made).assembly.bounds[:, 0].mean()
@@ -575,7 +634,7 @@ def goes_towards(made: Blueprint, joint: BlueprintJoint, side: str) -> bool:
     step = steps[np.linalg.norm(steps, axis=1).argmax()]
     step /= max(float(np.linalg.norm(step)), 1e-12)
     if side in _SIDES:
-        axis, sign = _SIDES[side]
+        axis, sign = _side(made, side)
         along = float(step[axis]) * sign
         return (abs(along) if low < -1e-6 else along) > _TOWARDS
     away = part.bounds.mean(axis=0) - shut.assembly.bounds.mean(axis=0)
@@ -598,7 +657,7 @@ def are_round(made: Blueprint, names: Sequence[str]) -> bool:
 def _size_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
     extents = np.ptp(_boxes(made, names), axis=1)
     for size, wanted in part.size.items():
-        own = [made.parameters[name] for name in _length_names(family, noun, size)]
+        own = [made.parameters[name] for name in length_names(family, noun, size)]
         sizes = [*own, *(_extent(box, size) for box in extents)]
         if not any(_same(wanted, value) for value in sizes):
             yield f"{size}: {wanted:.3g} m was asked for, it is {sizes[0]:.3g} m"
@@ -610,9 +669,20 @@ def _is_looked(made: Blueprint, wanted: PartRequest) -> bool:
     return any((wanted.color or "") in name and (wanted.material or "") in name for name in own)
 
 
+def _side(made: Blueprint, side: str) -> tuple[int, int]:
+    """Axis and sign of a side; the front of what rolls along x, as a car, is where that points."""
+    axis, sign = _SIDES[side]
+    rolls = sum(
+        joint.kind is JointType.CONTINUOUS and joint.parent == made.parts[0].name and abs(joint.axis[1]) > _UPRIGHT
+        for joint in made.joints
+        if "wheel" in joint.child
+    )
+    return (1 - axis, -sign) if rolls > 1 and axis < 2 else (axis, sign)
+
+
 def is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
     """Return True if all of some parts are at a side of the whole."""
-    axis, sign = _SIDES[side]
+    axis, sign = _side(made, side)
     whole = closed(made).assembly.bounds[:, axis]
     near = _ASIDE * np.ptp(whole)
     places = sign * (_boxes(made, names)[:, :, axis] - whole.mean())
@@ -625,7 +695,7 @@ def is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
 def _is_hinged(made: Blueprint, names: Sequence[str], side: str) -> bool:
     shut = closed(made)
     joints = [shut.joint_above[name] for name in names if name in shut.joint_above]
-    axis, sign = _SIDES[side]
+    axis, sign = _side(made, side)
     middle = {part.name: part.bounds.mean(axis=0)[axis] for part in shut.parts}
     return bool(joints) and all(
         joint.kind.turns and sign * (joint.pivot[axis] - middle[joint.child]) > 0.0 and abs(joint.axis[axis]) < _LEVEL
@@ -650,7 +720,10 @@ def moves_so(joint: BlueprintJoint, motion: str) -> bool:
 
 def _goes(joint: BlueprintJoint, wanted: tuple[float, float]) -> bool:
     way = wanted[1] - wanted[0]
-    return all(abs(end - there) < _SAME * way for end, there in zip(wanted, _limits(joint), strict=True))
+    low, high = _limits(joint)
+    if joint.kind is JointType.PRISMATIC and wanted[0] == 0.0:  # how far it slides
+        low, high = 0.0, high - low
+    return all(abs(end - there) < _SAME * way for end, there in zip(wanted, (low, high), strict=True))
 
 
 def _stands(joint: BlueprintJoint, much: float | tuple[float, str]) -> bool:

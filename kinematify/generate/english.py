@@ -85,18 +85,23 @@ degree 0.15: slightly
 degree 1: fully wide completely
 stative: starts begins stands_ standing shown starting beginning drawn left currently initially
 where: up down out in back forward forwards outward outwards inward inwards away open upward upwards downward downwards
-where: off through over flat apart together
+where: off through over flat apart backward backwards
+where: together in_unison simultaneously at_once at_the_same_time
+coupled: together in_unison simultaneously synchronously at_once at_the_same_time geared linked coupled
 towards top: up upward upwards
 towards bottom: down downward downwards
 towards out: out outward outwards
 towards in: inward inwards
 towards front: forward forwards
+towards back: backward backwards
 extent 0 0.6: toy
 extent 0 0.3: pocket handheld tiny mini
 extent 0.5 99: industrial giant huge
 endless: endlessly continuously all_the_way all_the_way_round full_circle right_round
+endless: round_and_round all_the_way_around right_around full_turn
+motion spin: go_round goes_round going_round
 stroke: travel stroke range way opening throw movement
-having: whose where when
+having: whose where when show
 having: with having has have featuring including plus containing holding carrying comes_with fitted_with equipped_with
 without: without no lacking
 relative: that which who
@@ -122,14 +127,21 @@ filler: let would wants wanted object item thing model piece side sides hand end
 filler: approximately roughly approx exactly about around whole throughout part parts each_other altogether total s
 filler: already mounted attached fixed connected placed located positioned arranged painted finished coloured colored
 filler: color colour made built there here lines stacked set in_total fitted independently have design looking ones one
-filler: while edge line corner done shaped this just only very really quite rather too
+filler: edge overall ornament decoration figure model unit rest while line done shaped this just only very
+plain: really quite rather too
 plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant fancy cute beautiful nice cool
 plain: robust strong durable sturdy solid professional practical simple plain standard typical normal regular usual
 plain: common new old good great quality ergonomic comfortable realistic detailed basic scandinavian victorian pretty
 plain: brushed polished matte matt glossy shiny heavy handy cosy cozy lovely fancy funky tidy cast wrought lacquered
 plain: big large small little narrow short slim compact shallow low tall wide_ style styled freestanding free own extra
 plain: industrial toy pocket handheld tiny mini giant huge home household domestic separate individual
-plain: independent traditional identical matching dark light bright pale deep
+plain: independent traditional identical matching bright construction compound
+plain: benchtop tabletop desktop countertop kitchen bathroom bedroom office hospital hotel school workshop nursery lobby
+shade dark: dark deep mahogany teak rosewood ebony wenge
+shade light: light pale pastel
+material walnut: dark_wood dark_wooden dark_timber
+material pine: light_wood light_wooden pale_wood pale_timber
+round: round
 form: round ring ball bar cup loop wire mesh star bow dome barrel t d u l x hook
 part: door drawer flap knob button lever caster wheel crank rotor vent lock handle lid tray shelf hook gauge needle dial
 part: switch pedal seat leg arm blade window light display screen ladder mirror basket rail bell finger joint cover
@@ -142,7 +154,7 @@ part: holder rack frame base body pole post chain latch axle bin slot hinge
 ROLES = pairs(
     "sign ,|having h|and &|dims x|range r|symmetric r|quantity q|number #|relative R|without W|relation L|lines =|"
     "beside T|both B|endless e|det d|color c|material c|side s|ordinal s|dimension D|refers P|state S|motion m|"
-    "degree g|stative t|stroke k|limit p|place p|like Y|be b|where v|plain f|part w|use u|form a|filler _"
+    "degree g|shade f|stative t|stroke k|limit p|place p|like Y|be b|where v|plain f|part w|use u|form a|filler _"
 )
 """Class of a word -> the letter that stands for it in patterns; the first one counts."""
 OF_SOME = re.compile(
@@ -209,18 +221,25 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"(\d+) and a half\b", r"\1.5"),
     (
         (
-            r"^(?:(?:for|in) [^,;:.]*?,? )?(?:i|we|you|they|my \w+|our \w+) (?:(?:am|are|is|would|just|really) )*"
-            r"(?:(?:look|search|ask)(?:s|ing)? for|wants?|needs?|like|design(?:ing)?|build(?:ing)?|simulat(?:e|ing)) "
-            r"|^something like |^something (?:\w+ )*?for [^,;:.]*[,:] "
+            r"^(?:(?:hi|hello|hey),? )?(?:(?:(?:for|in) [^,;:.]*?,? )?(?:i|we|you|they|my|our|us)\b[^,;:.]*?"
+            r"\b(?:(?:look|search|ask)(?:s|ing)? for|wants?|needs?|would like|d like|design(?:ing)?|build(?:ing)?|"
+            r"simulat(?:e|ing)|had one of those|have one of those|after|like) (?=\S)|(?:looking|searching) for "
+            r"|(?:can|could|would|will) (?:you|u|ya) (?:please )?|(?:i|we|my|our) [^,;.:]*: "
+            r"|something like |something (?:\w+ )*?for [^,;:.]*[,:] )"
         ),
         "",
     ),
+    (r",? ?(?:and )?(?:the )?(?:rest|others|other ones) (?:(?:are|is|stay|remain|all) )*(?:shut|closed)\b", ""),
+    (r",? (?:just )?(?:like|as) (?:they|the ones?|those|you|we|in|on|at)\b[^,;.:]*", ""),
+    (r"\b(?:pale|pastel) (?=(?:red|green|blue|yellow|orange|brown|pink|purple|gr[ea]y)\b)", "light "),
     (r"^((?:an? |the )?)built in ", r"\1"),
     (
         rf"((?:rotat|turn|swivel|spin|tilt|swing)\w*(?: (?:up|down|by|to|through))*) ({_NUMBER})(?=$|[,.;]| and )",
         r"\1 \2 deg",
     ),
-    (rf"± ?({_NUMBER})(?=$|[,.;]| and )", r"± \1 deg"),
+    (rf"(±|\bat) ?({_NUMBER})(?=$|[,.;]| and )", r"\1 \2 deg"),
+    (r"(?:from )?\b(?:flat|horizontal|level|closed|shut|upright|vertical) (?:up )?to (?=\d+ ?(?:deg|°))", "0 to "),
+    (r"(?:(?<=long|wide|high|tall|deep) |\bwhen )(?:(?:when|it|is|they|are|fully) )*(?:closed|shut)\b", ""),
     (r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick|across)\b)", " inch "),
 )
 """Spelling, and how it is read."""
@@ -260,7 +279,11 @@ def read_units(text: str) -> list[Unit]:
     _refuse_unreadable(text, plain)
     for pattern, instead in _SPELT:
         plain = re.sub(pattern, instead, plain)
-    plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
+    plain = re.sub(
+        rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b(?! (?:plate|pedal|rest|board)))",
+        lambda found: f"{_NUMBERS[found[1]]} ",
+        plain,
+    )
     plain = _BARE.sub(lambda found: _with_unit(found, plain), plain)
     plain = _BEFORE.sub(r"\2 \1", plain)
     for purpose in _PURPOSE.findall(plain):

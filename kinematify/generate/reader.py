@@ -11,6 +11,8 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from kinematify.errors import InputError
 from kinematify.generate.delivery import (
     BuildResult,
@@ -18,12 +20,18 @@ from kinematify.generate.delivery import (
     count_parameter,
     deliver,
     goes_towards,
+    has_shade,
+    has_sides,
     is_at,
-    main_size,
+    is_coupled,
+    length_names,
     moves_so,
     names_called,
     on_both_sides,
+    sides_meant,
+    stands_at,
     stands_in,
+    stem_of,
 )
 from kinematify.generate.english import OF_SOME, ROLES, WORDS, Unit, read_units, values_of, vocabulary
 from kinematify.generate.kind_search import (
@@ -83,9 +91,20 @@ _LIMIT = ".*?(?=[,hWRLbPpiY]|(?<!#)o|(?<!g)S(?=[^,]))"
 """Where the name of the whole ends at the latest."""
 Match = re.Match[str]
 Facts = dict[str, Any]
-"""Of `PartRequest`; besides, `grid` (columns and rows, 0 of what nobody said), `each_side`, `per` (a noun), `round` and
-`corner`, a second side; and, until a noun is found, `article`, `pick` (the left one) and `bare` (a length)."""
-_INNER = ("grid", "each_side", "per", "round", "corner")
+"""Of `PartRequest`; besides, `grid` (columns and rows, 0 of what nobody said), `each_side`, `per` (a noun), `round`,
+`corner` (a second side), `sides` (lengths of which nobody said the dimension), `levels` (how high it is at both ends of
+its way), `shade` and `coupled`; and, until a noun is found, `article` and `pick` (the left one)."""
+_INNER = ("grid", "each_side", "per", "round", "corner", "sides", "levels", "shade", "coupled")
+_OTHERWISE = {
+    "round": "not round",
+    "corner": "not at the {}",
+    "each_side": "not as many on either side",
+    "sides": "no side of it is as long as asked for",
+    "levels": "not so high at the ends of its way",
+    "shade": "not {}",
+    "coupled": "they do not move together",
+}
+"""What is said of parts that is no field of a request -> how it is otherwise."""
 _OPPOSITE = {"left": "right", "right": "left"}
 
 
@@ -128,8 +147,6 @@ class Sentence:
     values: Facts = field(default_factory=dict)
     things: dict[str, Facts] = field(default_factory=dict)
     """By noun; the whole by an empty one."""
-    guesses: set[str] = field(default_factory=set)
-    """Nouns that may be parts; words not read where the object has none."""
     ahead: Facts = field(default_factory=dict)
     """Facts of the next noun: a row of knobs, no doors, pull the handle."""
     faults: list[str] = field(default_factory=list)
@@ -216,8 +233,11 @@ class Sentence:
         for start in range(limit):
             for end in range(min(start + 6, len(words)), start, -1):
                 family = kind_called(words[start:end]) if all(words[start:end]) else None
-                if family and "w" not in re.split("[,#qxr]", self.roles[end:limit])[0]:
-                    return family, start, end
+                if not family:
+                    continue
+                behind, known = re.split("[,#qxr]", self.roles[end:limit])[0], key_of(" ".join(family.words))
+                if all(role != "w" or words[end + k] in known for k, role in enumerate(behind)):
+                    return family, start, end + len(behind) * ("w" in behind)  # a hexapod walking robot
         return None
 
     # ---- from left to right ----------------------------------------------------------------------------------------
@@ -294,7 +314,7 @@ class Sentence:
         self.ahead = {"count": 0} if found[0] == "W" and self._span(k + 1) else {}
         if self.ahead:
             self._take([k])
-        self.is_shown = self._text(k, k + 2) in ("with the", "with its", "with their")
+        self.is_shown = self._text(k, k + 2) in ("with the", "with its", "with their") or self._text(k) == "show"
         self.fresh = False
 
     # ---- nouns -----------------------------------------------------------------------------------------------------
@@ -314,15 +334,14 @@ class Sentence:
         words = self._text(head, end)
         key = " ".join(key_of(words))
         facts, used, is_choice = self._described(k, end, head)
-        meanings = self.words.get(key, {})
         pick, article = facts.pop("pick", ""), facts.pop("article", False) and "count" not in facts
-        is_guess = is_place or is_choice or "part" not in meanings
         if words in ("one", "ones") and self.several:
-            key, is_guess = self.several, False
+            key = self.several
             if words == "one":
                 facts.pop("count", None)
             words = key if words == "one" else f"{key}s"
-        if is_place and not is_choice and (key in _WHERE or not (meanings or key in self.things)):
+        is_place &= "count" not in facts
+        if is_place and not is_choice and (key in _WHERE or not (key in self.words or key in self.things)):
             self._take(range(head, end) if key in _WHERE else (), "-")
             return key
         if self.each and not is_place:
@@ -341,10 +360,8 @@ class Sentence:
             facts |= several if is_plural else {"count": 1} if article and "per" not in facts else {}
         if key in _STILL:
             facts.pop("open", None)
-        if is_guess and noun not in self.things:
-            self.guesses.add(noun)
         if facts or not is_choice:
-            noun = self._add(noun, [*used, *range(head, end)], **facts)
+            noun = self._add(noun, [*used, *range(head if key in self.words else end - 1, end)], **facts)
         if not is_place:
             self.subject, self.is_plural, self.fresh = noun, is_plural, False
             self.several = key if is_plural else self.several
@@ -396,8 +413,8 @@ class Sentence:
         elif role == "S":
             said = {"open": float(self._mean(k - 1, "degree") or self._mean(k, "state"))}
             used += [k - 1] if self.roles[k - 1] == "g" else []
-        elif word == "round":
-            said = {"round": True}
+        elif what := next((what for what in ("round", "shade") if self._mean(k, what)), ""):
+            said = {what: self._mean(k, what)}
         elif role in "mMH" and not (is_part and self._mean(k, "name") and not self._mean(k + 1, "towards")):
             said = {"motion": self._mean(k, "motion")}
             if towards := self._mean(k + 1, "towards"):
@@ -443,9 +460,11 @@ class Sentence:
                 return noun
             raise InputError(f"The text says {count} and {facts['count']} of {noun!r}. Say one.")
         fits = True
+        if len(facts.get("sides", "")) == 1 and length_names(self.family, noun, "length"):
+            facts["size"] = {**facts.get("size", {}), "length": facts.pop("sides")[0]}
         for name, value in facts.items():
-            if name in ("size", "bare"):
-                own["size"] = {**own.get("size", {}), **(value if name == "size" else {"length": value})}
+            if name == "size":
+                own["size"] = {**own.get("size", {}), **value}
             elif own.get(name) == "move":
                 own[name] = value
             elif name == "side" and own.get(name, value) != value:  # at the top left
@@ -465,15 +484,8 @@ class Sentence:
         numbers, sizes = values_of(self._text(k)), facts.setdefault("size", {})
         value, si = numbers[-1]
         used.append(k)
-        if self.roles[k] == "x":
-            names = ["width", "depth", "height"]
-            known = {item.name for item in self.family.parameters}
-            if len(numbers) == 2 and "depth" not in known:
-                names.remove("depth")
-            if not si:
-                used.pop()
-                names.clear()
-            sizes.update(zip(names, (number for number, _ in numbers), strict=False))
+        if self.roles[k] == "x" and si:
+            facts["sides"] = tuple(number for number, _ in numbers)
             return 1
         step = k + 1 + (self.roles[k + 1 : k + 3] in ("iD", "oD"))
         if si == "m" and (name := self._mean(step, "dimension")):
@@ -481,7 +493,7 @@ class Sentence:
             used.append(step)
             return step + 1 - k
         if si == "m":
-            facts["bare"] = value
+            facts["sides"] = (value,)
         else:
             used.remove(k)
         return 1
@@ -489,6 +501,8 @@ class Sentence:
     def _attribute(self, found: Match) -> int:
         """Read a look, a size or a side that is alone."""
         k, facts, used, owner = found.start(), Facts(), list[int](), self._owner
+        if self.roles[k - 1] == "#":  # and five black
+            return k + 1
         k += self._modifier(k, k, facts, used, is_part=False)
         side = WORDS.get(facts.pop("pick", ""), {}).get("side")
         if side and owner:
@@ -502,7 +516,7 @@ class Sentence:
         (low, _), (value, si) = numbers[0], numbers[-1]
         low = -value if self._mean(k, "symmetric") or "B" in found[0] else low if self.roles[k] == "r" else 0.0
         if si == "m" and low > 0.0:
-            low, value = 0.0, value - low
+            facts["levels"], low, value = (low, value), 0.0, value - low
         usual = "slide" if si == "m" else "hinge"
         owner = owner or usual
         for other in (self.things.get(owner, {}).get("motion", usual), usual):
@@ -540,15 +554,20 @@ class Sentence:
                 share = float(self._mean(j, "degree"))
             elif role in "mMNHS":
                 how = how or str(self._mean(j, "motion") or "move")
+            elif role == "e" and share is None:
+                how = "spin"
+            elif role == "e":
+                share = 1.0  # folded all the way down
             stands |= role == "t"
-            how = "spin" if role == "e" else how
         heads = [side for j in range(k, found.end()) if (side := self._mean(j, "towards"))]
-        facts = {"towards": heads[0]} if heads and how else {}
+        facts: Facts = {"towards": heads[0]} if heads and (how or share) else {}
+        if any(self._mean(j, "coupled") for j in range(k, found.end())):
+            facts["coupled"] = True
         if how and far < 0 and self.roles[found.end() - 1] in "md" and self._span(found.end()):
             self.ahead = {"motion": how, **facts}  # pull the handle
             self._take(range(*found.span()))
         elif self._mean(found.start("then"), "state") == "0":  # 160 cm closed
-            self._fact(found, owner, bare=values_of(self._text(far))[0][0])
+            self._fact(found, owner, sides=(values_of(self._text(far))[0][0],))
         elif not (share is None or owner or how) and (place := re.search("s[^,hR]*$", self.roles[:k])):
             self._take(range(place.start(), found.end()), "!")  # the top half is open
         else:
@@ -560,7 +579,7 @@ class Sentence:
                 elif how:
                     self._fact(found, noun, motion=how, **facts)
                 elif stands and share is not None:
-                    self._fact(found, noun, open=share)
+                    self._fact(found, noun, open=share, **facts)
         return found.end()
 
     # ---- places ----------------------------------------------------------------------------------------------------
@@ -606,7 +625,7 @@ class Sentence:
             self.subject, end = subject if is_place else self.subject, span[1]
         elif subject:
             other = next((noun for noun in reversed(self.things) if noun not in ("", subject)), "")
-        if other in self.things and other != subject:  # above (1) or below (-1) it
+        if {subject, other} <= self.things.keys() and other != subject:  # above (1) or below (-1) it
             mine, its = (self.things[noun] for noun in (subject, other))
             its.setdefault("row", mine.setdefault("row", its.get("row", 10 + step) - step) + step)
             self._take([k], subject)
@@ -618,8 +637,11 @@ class Sentence:
 
     def _rest(self, found: Match) -> None:
         """Pass over a word, or read in which direction what was named moves."""
-        if "motion" in self.things.get(self._owner, ()) and (side := self._mean(found.start(), "towards")):
+        k, facts = found.start(), self.things.get(self._owner, ())
+        if "motion" in facts and (side := self._mean(k, "towards")):
             self._fact(found, towards=side)
+        elif facts and self._mean(k, "coupled"):
+            self._fact(found, coupled=True)
 
     # ---- the whole -------------------------------------------------------------------------------------------------
 
@@ -637,8 +659,8 @@ class Sentence:
 
     def _whole(self, what: str, value: Any, units: Iterable[int]) -> None:
         units = list(units)
-        if what == "bare":
-            what, value = "size", {main_size(self.family): value}
+        if what == "sides":
+            what, value = "size", dict(zip(sides_meant(self.family, value), value, strict=False))
         if what == "size":
             sizes = self.things.setdefault("", {})
             for name, size in value.items():
@@ -654,7 +676,7 @@ class Sentence:
                 self._set("open", value, units)
         elif what == "hinge":
             self._add("door", units, hinge=value)
-        elif what in ("motion", "towards", "round"):
+        elif what in ("motion", "towards", "round", "shade", "coupled"):
             self.moves.append((what, value, units))
             self._take(units)
 
@@ -714,8 +736,8 @@ class Sentence:
         for noun, facts in list(self.things.items()):
             if facts.get("count") == 0 and facts.keys() - {"count", "at_least", "row"}:
                 raise InputError(f"The text says that there is no {noun}, and what it is like. Say one.")
-            if (name := self.words.get(noun, {}).get("length")) and "length" in facts.get("size", {}):
-                self._set(name, facts["size"]["length"], [k for k, owner in self.taken.items() if owner == noun])
+            if (name := self.words.get(noun, {}).get("length")) and len(facts.get("sides", "")) == 1:
+                self._set(name, facts["sides"][0], [k for k, owner in self.taken.items() if owner == noun])
                 del self.things[noun]
                 continue
             if "row" in facts:
@@ -744,24 +766,17 @@ class Sentence:
         """
         made = deliver(self.request, seed=seed)
         blueprint, taken = made.blueprint, dict(self.taken)
-        lost = self.guesses & set(made.missing)
-        listed = [why for why in made.differences if not any(why.startswith(f"{noun}: a") for noun in lost)]
-        joints = [joint for joint in blueprint.joints if joint.mimic is None]
+        lost = set(made.unmeasured)
+        listed = [why for why in made.differences if why.split(":")[0] not in lost]
         for what, value, units in self.moves:
-            some = any if value in ("pan", "tilt", "spin") or what == "towards" else all
-            holds = some(
-                moves_so(joint, value) if what == "motion" else goes_towards(blueprint, joint, value)
-                for joint in joints
-            )
-            if not (are_round(blueprint, [blueprint.parts[0].name]) if what == "round" else holds):
+            if not self._holds(what, value, self._text(units[0]), blueprint):
                 taken |= dict.fromkeys(units, "!")
         for noun, facts in self.things.items():
-            if names := names_called(self.family, blueprint, noun):
+            if noun not in lost and (names := names_called(self.family, blueprint, noun)):
                 listed += [f"{noun}: {why}" for why in self._inner_faults(facts, blueprint, names)]
-        there = {key for part in blueprint.parts for key in key_of(part.name.replace("_", " "))}
-        low, high = blueprint.assembly.bounds
-        large = float((high - low).max())
-        for k in range(self.stop + 1):
+        there = {key for part in blueprint.parts for key in key_of(stem_of(part.name).replace("_", " "))}
+        large = float(np.ptp(blueprint.assembly.bounds, axis=0).max())
+        for k in range(self.stop + 1) if not self.request.size else ():
             smallest, largest = map(float, (self._mean(k, "extent") or f"0 {large}").split())
             if not smallest <= large <= largest:
                 listed.append(f"{self._text(k)}: it is {large:.2g} m large")
@@ -773,34 +788,63 @@ class Sentence:
             facts={"text": self.text, **made.facts},
         )
 
+    def _holds(self, what: str, value: Any, word: str, made: Blueprint) -> bool:
+        """True if what is said of the whole is so; that it folds or rocks is only known of a kind that says so."""
+        base = [made.parts[0].name]
+        if what == "coupled":
+            return is_coupled(made, [joint.child for joint in made.joints])
+        if what in ("round", "shade"):
+            return are_round(made, base) if what == "round" else has_shade(made, base, value)
+        if value == "hinge" and not re.match("turn|rotat|swing|hing|pivot", word):
+            about = (*self.family.words, self.family.about, *self.family.part_words)
+            return any(word[:4] in said.lower() for said in about)
+        some = any if value in ("pan", "tilt", "spin") or what == "towards" else all
+        return some(
+            moves_so(joint, value) if what == "motion" else goes_towards(made, joint, value)
+            for joint in made.joints
+            if joint.mimic is None
+        )
+
     def _inner_faults(self, facts: Facts, made: Blueprint, names: list[str]) -> Iterator[str]:
         """What is said of parts, is no field of a request, and is otherwise."""
         columns, rows = (lines or len(names) for lines in facts.get("grid", (1, 1)))
         if "grid" in facts and not stands_in(made, names, columns, rows):
             yield f"columns and rows are not {columns} and {rows}"
-        if "round" in facts and not are_round(made, names):
-            yield "not round"
-        if "corner" in facts and not is_at(made, names, facts["corner"]):
-            yield f"not at the {facts['corner']}"
-        if "each_side" in facts and not on_both_sides(made, names):
-            yield "not as many on either side"
+        checks = {
+            "round": lambda _: are_round(made, names),
+            "corner": lambda side: is_at(made, names, side),
+            "each_side": lambda _: on_both_sides(made, names),
+            "sides": lambda sides: has_sides(made, names, sides),
+            "levels": lambda levels: stands_at(made, names, levels),
+            "shade": lambda shade: has_shade(made, names, shade),
+            "coupled": lambda _: is_coupled(made, names),
+        }
+        for what, holds in checks.items():
+            if what in facts and not holds(facts[what]):
+                yield _OTHERWISE[what].format(facts[what])
         if (whose := facts.get("per")) and len(names) % max(len(names_called(self.family, made, whose)), 1):
             yield f"{len(names)} there, not as many for each {whose}"
 
     def _unread(self, taken: Mapping[int, str], lost: set[str], there: set[str]) -> Iterator[str]:
-        """Words of content that nothing took, or a noun that is no part; those of a clause together."""
+        """Words of content that nothing took, or a noun that is no part; a quotation with the words between them."""
         found: list[int] = []
         head = lemma(self._text(self.stop - 1))
-        for k, role in enumerate(self.roles[: len(self.units) + 1]):
+        for k, role in enumerate(self.roles[: len(self.units)]):
             owner = taken.get(k)
-            words = key_of(self._text(k))
-            is_unknown = owner is None and not (set(words) <= there or kind_called([*words, head]) is self.family)
-            asks = role in _CONTENT or self._mean(k, "towards") or self._mean(k, "aside")
-            if owner == "!" or (asks and (owner in lost or is_unknown)):
+            words = {word.removesuffix("ed") for word in key_of(self._text(k))}
+            is_known = words <= there or kind_called([*key_of(self._text(k)), head]) is self.family
+            asks = role in _CONTENT or any(self._mean(k, what) for what in ("towards", "aside", "shade", "coupled"))
+            if owner == "!" or (asks and (owner in lost or (owner is None and not is_known))):
                 found.append(k)
-            elif found and (role == "," or role in _CONTENT):
-                yield self._text(found[0], found[-1] + 1)
+            elif found and asks:
+                yield self._quoted(found[0], found[-1] + 1)
                 found = []
+        if found:
+            yield self._quoted(found[0], found[-1] + 1)
+
+    def _quoted(self, k: int, end: int) -> str:
+        """Return what stands there in the text."""
+        return re.sub(r" (?=[^\w\s'\"±.~-])", "", self._text(k, end))
 
 
 def _match(pattern: str, text: str, k: int) -> Match:
