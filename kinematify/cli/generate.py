@@ -247,8 +247,7 @@ def _read(made: BuildResult) -> str:
     for noun, part in asked.parts.items():
         said = part.model_dump(exclude_defaults=True)
         facts.append(f"{noun} ({', '.join(f'{name} {_shown(value)}' for name, value in said.items()) or 'any'})")
-    copies = f"{asked.copies} of " if asked.copies > 1 else ""
-    return "\n".join([*made.notes, f"Request: {copies}{asked.kind}{': ' if facts else ''}{'; '.join(facts)}."])
+    return "\n".join([*made.notes, f"Request: {asked.kind}{': ' if facts else ''}{'; '.join(facts)}."])
 
 
 def _shown(value: Any) -> str:

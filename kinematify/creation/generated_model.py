@@ -52,5 +52,5 @@ def not_as_asked(made: BuildResult) -> str:
     """Return what differs from the request and which words were not read; empty if nothing."""
     lines = [f"Not as asked: {'; '.join(made.differences)}"] if made.differences else []
     if words := made.unread:
-        lines.append(f"Words not read: {', '.join(dict.fromkeys(words))}")
+        lines.append(f"Words not read: {'; '.join(map(repr, dict.fromkeys(words)))}")
     return "\n".join(lines)

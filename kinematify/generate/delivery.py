@@ -24,7 +24,7 @@ from kinematify.generate.request import listed
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import Part
     from kinematify.generate.library.kind import Kind
@@ -44,7 +44,6 @@ _FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cy
 _SHOWN = 0.5  # of the surface, that has the look of the whole at least
 _TOWARDS = 0.3  # of a way, that leads to a side
 _DARK = 0.4  # brightness of what is dark at most
-_GAP = 0.05  # between several [m]
 _OWN_LOOK = ("rubber", "glass", "mirror")
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
@@ -62,8 +61,10 @@ _ALIKE = pairs(
 """Noun -> what it may be where no part is called so."""
 _BASE = words_of("body base frame housing case casing cabinet")
 """Nouns that mean the base link where no part is called so."""
-_APART = words_of("door drawer wheel lid flap window knob button shelf tray seat")
-"""Nouns of parts that are bodies of their own, each; several pedals, legs or tines may be one."""
+_HANDLES = tuple(words_of("handle knob pull grip"))
+"""Ends of nouns of what has the look of all handles of an object."""
+_APART = tuple(words_of("door drawer wheel lid flap window knob button shelf tray seat"))
+"""Ends of nouns of parts that are bodies of their own, each; several pedals, legs or tines may be one."""
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 
@@ -100,20 +101,18 @@ def stem_of(name: str) -> str:
 def names_called(family: Kind, blueprint: Blueprint, noun: str) -> list[str]:
     """Return the names of the parts that a noun means, e.g. ``door``, ``left door`` or ``third drawer``."""
     words = noun.lower().replace("_", " ").split()
-    picked = [word for word in words[:-1] if word in _PICKED or word in _ORDINALS]
-    found: list[Part] = []
-    for plain in (words, [word for word in words if word not in picked], words[-1:]):
-        found = _called(family, blueprint, " ".join(plain))
-        if found and (len(plain) == len(words) - len(picked) or len({stem_of(part.name) for part in found}) == 1):
-            picked = picked if plain is not words else []
-            break
-        found = []
+    found, picked = _called(family, blueprint, noun), list[str]()
+    if not found:
+        picked = [word for word in words[:-1] if word in _PICKED or word in _ORDINALS]
+        found = _called(family, blueprint, " ".join(word for word in words if word not in picked))
+    if not found and len({stem_of(part.name) for part in _called(family, blueprint, words[-1])}) == 1:
+        found = _called(family, blueprint, words[-1])
     for word in picked:
         if word in _ORDINALS:
             found.sort(key=lambda part: tuple(np.round(part.bounds.mean(axis=0)[[2, 0]], 3) * (-1, 1)))
             found = found[_ORDINALS.index(word) :][:1]
         elif len(found) == 1:
-            found = found if is_at(blueprint, [found[0].name], _PICKED[word]) else []
+            found = found if _is_at(blueprint, [found[0].name], _PICKED[word]) else []
         elif found:
             axis, sign = _side(blueprint, _PICKED[word])
             places = [sign * float(part.bounds.mean(axis=0)[axis]) for part in found]
@@ -164,20 +163,18 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
     Raises:
         InputError: A parameter is out of its bounds, or nothing can be built.
     """
-    family, faults = request.family, list[str]()
+    family = request.family
     if (across := _across(family))[1:] and {"width", "length"} == request.size.keys() - {"height"}:
         own = {"width": across[0], "length": across[1]}  # how long is one of them
         size = {own.get(name, name): far for name, far in request.size.items()}
         request = request.model_copy(update={"size": size})
-    values = dict(_values(family, request, faults))
+    values = dict(_values(family, request))
     made = build(family, values, seed=seed)
     if fitted := _refitted(family, made, request):
         with suppress(InputError):
             made = build(family, {**values, **fitted}, seed=seed)
     made = _sized(made, request)
     made, shown = _painted(made, *(str(request.parameters.get(look, "")) for look in ("material", "color")))
-    if shown < _SHOWN:
-        faults.append(f"look of the whole: as asked for on {100 * shown:.0f} % of the surface")
     if _mirror_helps(family, made, request):
         made = made.scaled(1.0, mirrored=True)
     missing, unmeasured = list[str](), list[str]()
@@ -187,9 +184,9 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
             made = _adjusted(made, noun, names, part)
         elif part.count != 0 and not _is_detail(family, noun, made):
             missing.append(noun)
-    faults += _faults(family, made, request, missing, unmeasured)
-    if request.copies > 1:
-        made = made.repeated(request.copies, float(np.ptp(closed(made).assembly.bounds, axis=0)[0]) + _GAP)
+    faults = list(_faults(family, made, request, missing, unmeasured))
+    if shown < _SHOWN:
+        faults.append(f"look of the whole: as asked for on {100 * shown:.0f} % of the surface")
     return BuildResult(
         blueprint=made,
         request=request,
@@ -205,37 +202,28 @@ def closed(blueprint: Blueprint) -> Blueprint:
     return blueprint.moved({joint.child: -joint.value for joint in blueprint.joints})
 
 
-def _values(family: Kind, request: Request, faults: list[str]) -> Iterator[tuple[str, Value]]:
-    """Parameters of a kind that the request sets, by itself or by the sizes, counts and looks of parts."""
+def _values(family: Kind, request: Request) -> Iterator[tuple[str, Value]]:
+    """Parameters of a kind that the request sets, by itself or by the sizes, counts and looks of parts.
+
+    What a parameter cannot be is measured on the object.
+    """
     known = {item.name: item for item in family.all_parameters}
     yield from request.parameters.items()
-    wanted: list[tuple[str, str, Any]] = [
-        (_size_parameter(family, name), name, size) for name, size in request.size.items()
-    ]
+    wanted: list[tuple[str, Any]] = [(_size_parameter(family, name), size) for name, size in request.size.items()]
     for noun, part in request.parts.items():
-        counted = count_parameter(family, noun)
-        if counted:
-            wanted.append((counted.name, f"number of {noun}s", part.count))
+        if counted := count_parameter(family, noun):
+            wanted.append((counted.name, part.count))
         own = noun.replace(" ", "_")
         if part.count == 0 and "none" in getattr(known.get(own), "choices", ()):
-            wanted.append((own, noun, "none"))
-        wanted += [
-            (name, f"{size} of the {noun}", value)
-            for size, value in part.size.items()
-            for name in length_names(family, noun, size)
-        ]
-        if noun.split()[-1] in ("handle", "knob", "pull", "grip") and "handle" in known:
-            wanted += [(f"handle_{look}", look, getattr(part, look)) for look in ("color", "material")]
-        wanted.append(("hinge_side", "hinge", part.hinge))
-    for name, said, value in wanted:
-        if name not in known or value is None or name in request.parameters:
-            continue
-        try:
-            yield name, checked(family, name, value)
-        except InputError as error:
-            # the whole is scaled where no parameter reaches so far, and a part is measured
-            if said not in request.size and not said.startswith(("length of", "number of")):
-                faults.append(f"{said}: {str(error).rstrip('.')}")
+            wanted.append((own, "none"))
+        wanted += [(name, value) for size, value in part.size.items() for name in length_names(family, noun, size)]
+        if noun.endswith(_HANDLES) and "handle" in known:
+            wanted += [(f"handle_{look}", getattr(part, look)) for look in ("color", "material")]
+        wanted.append(("hinge_side", part.hinge))
+    for name, value in wanted:
+        if name in known and value is not None and name not in request.parameters:
+            with suppress(InputError):
+                yield name, checked(family, name, value)
 
 
 def count_parameter(family: Kind, noun: str) -> Parameter | None:
@@ -298,11 +286,10 @@ def sides_meant(family: Kind, lengths: Sequence[float]) -> Sequence[str]:
     if len(lengths) == 1:
         usual = known[0] if len(known) == 1 else max(extents, key=extents.__getitem__)
         return ["length" if "length" in known else usual]
-    first = ("width", "height") if len(lengths) == 2 and "depth" not in known else tuple(_AXES)[: len(lengths)]
 
     def misfit(names: tuple[str, ...]) -> float:
         off = sum(abs(math.log(far / extents[name])) for name, far in zip(names, lengths, strict=True))
-        return off + 0.5 * (names != first)
+        return off + 0.5 * (names != tuple(_AXES)[: len(names)])
 
     return min(permutations(_AXES, len(lengths)), key=misfit)
 
@@ -336,7 +323,7 @@ def _sizes(made: Blueprint, name: str) -> list[float]:
     shut = closed(made)
     boxes = [np.ptp(bounds, axis=0) for bounds in (shut.assembly.bounds, shut.parts[0].bounds)]
     if name == "diameter" and not _has_round_sides(boxes[0]):
-        turned = [np.ptp(part.bounds, axis=0) for part in shut.parts if are_round(shut, [part.name])]
+        turned = [np.ptp(part.bounds, axis=0) for part in shut.parts if _are_round(shut, [part.name])]
         most = max(turned, key=np.median, default=boxes[0])
         if 2.0 * np.median(most) > boxes[0].max():
             boxes = [most]
@@ -364,7 +351,7 @@ def _mirror_helps(family: Kind, made: Blueprint, request: Request) -> bool:
     """True if all that is to be on the left is on the right, or the other way round."""
     sides = ("left", "right")
     held = [
-        is_at(made, names, part.side) if part.side in sides else _is_hinged(made, names, part.hinge or "")
+        _is_at(made, names, part.side) if part.side in sides else _is_hinged(made, names, part.hinge or "")
         for noun, part in request.parts.items()
         if (part.side in sides or part.hinge in sides) and (names := names_called(family, made, noun))
     ]
@@ -479,7 +466,6 @@ def _ranged(blueprint: Blueprint, names: Sequence[str], wanted: tuple[float, flo
 def _faults(
     family: Kind, made: Blueprint, request: Request, missing: Sequence[str], unmeasured: list[str]
 ) -> Iterator[str]:
-    kind = family.title
     for name, wanted in request.size.items():
         if not fits_size(made, name, wanted):
             yield f"{name}: {wanted:.3g} m was asked for, it is {_sizes(made, name)[0]:.3g} m"
@@ -487,12 +473,12 @@ def _faults(
     meant: list[tuple[str, set[str]]] = []
     for noun, part in request.parts.items():
         if noun in missing:
-            has = sorted({re.sub(r"_?\d+", "", stem_of(item.name)).replace("_", " ") for item in made.parts[1:]})
-            yield f"{noun}: {'an' if kind[0] in 'aeiou' else 'a'} {kind} has none; it has {listed(has[:12])}"
+            has = sorted({stem_of(item.name).replace("_", " ") for item in made.parts[1:]})
+            yield f"{noun}: this {family.title} has none; it has {listed(has[:12])}"
             continue
         names = names_called(family, made, noun)
         faults = list(part_faults(family, made, noun, names, part))
-        is_detail = len(names) < 2 <= (part.count or 0) and noun.rsplit(maxsplit=1)[-1] not in _APART
+        is_detail = len(names) < 2 <= (part.count or 0) and not noun.endswith(_APART)
         if faults and (not names or (is_detail and not count_parameter(family, noun))):
             unmeasured.append(noun)
         yield from (f"{noun}: {why}" for why in faults)
@@ -520,23 +506,22 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     """
     parameter = count_parameter(family, noun)
     there = len(names)
-    if parameter and (there < 2 or (part.count and there > part.count and there % part.count == 0)):
-        there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
+    if parameter and (own := int(made.parameters[parameter.name])) and (there < 2 or there % own == 0):
+        there = own  # slots are no parts, and a leg may be two
     alike = {name for other in _ALIKE.get(noun, "").split() for name in names_called(family, made, other)}
     groups = [len({*names, *alike}), *Counter(map(stem_of, names)).values()]
     if part.count not in (None, there) and (part.count not in groups or parameter) and (names or parameter):
         yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
-    if part.at_least and names and there < part.at_least and (parameter or noun.rsplit(maxsplit=1)[-1] in _APART):
+    if part.at_least and names and there < part.at_least and (parameter or noun.endswith(_APART)):
         yield f"several asked for, there is {there}"
     if not names and part.count != 0:
-        asked = part.model_dump(exclude_defaults=True).keys() - {"count", "at_least"}
-        asked -= {"color", "material"} if _is_looked(made, part) else set()
-        if asked:
+        looks = ["color", "material"] * noun.endswith(_HANDLES)
+        if asked := part.model_dump(exclude_defaults=True).keys() - {"count", "at_least", *looks}:
             yield f"it is no part of its own, so that its {listed(sorted(asked))} is not as asked for"
     if not names:
         return
     yield from _size_faults(family, made, noun, names, part)
-    if part.side and not is_at(made, names, part.side):
+    if part.side and not _is_at(made, names, part.side):
         yield f"not at the {part.side}"
     if part.hinge and not _is_hinged(made, names, part.hinge):
         yield f"not hinged on the {part.hinge}"
@@ -575,49 +560,44 @@ def _boxes(made: Blueprint, names: Sequence[str]) -> FloatArray:
     return np.array([part.bounds for part in closed(made).parts if part.name in names])
 
 
-def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) -> bool:
-    """Return True if parts stand in columns, side by side, and in rows, one above or behind another."""
+def _stands_in(made: Blueprint, names: Sequence[str], grid: tuple[int, int]) -> bool:
+    """True if parts stand in columns, side by side, and in rows, one above or behind another; 0 is all of them."""
+    columns, rows = (lines or len(names) for lines in grid)
     boxes = _boxes(made, names)
     apart = np.diff(np.sort(boxes.mean(axis=1), axis=0), axis=0) > 0.5 * np.ptp(boxes, axis=1).min(axis=0)
     along = 1 + apart.sum(axis=0)
     return bool(along[0] == columns and along[1:].max() == rows)
 
 
-def has_sides(made: Blueprint, names: Sequence[str], sides: Sequence[float]) -> bool:
-    """Return True if each of some parts has sides that are so long [m], in any direction."""
+def _has_sides(made: Blueprint, names: Sequence[str], sides: Sequence[float]) -> bool:
+    """True if each of some parts has sides that are so long [m], in any direction."""
     return all(
         any(all(map(_same, sides, some)) for some in permutations(box, len(sides)))
         for box in np.ptp(_boxes(made, names), axis=1)
     )
 
 
-def stands_at(made: Blueprint, names: Sequence[str], levels: tuple[float, float]) -> bool:
-    """Return True if the upper or lower end of parts is so high [m] where they begin and where they end to move."""
+def _stands_at(made: Blueprint, names: Sequence[str], levels: tuple[float, float]) -> bool:
+    """True if the upper or the lower ends of parts are so high [m] where they are closed and where they are open."""
     shut = closed(made)
-    heights = [
-        next(part for part in shut.moved({name: way}).parts if part.name == name).bounds[:, 2]
-        for name, joint in ((name, shut.joint_above[name]) for name in names if name in shut.joint_above)
-        for way in (joint.lower, joint.upper)
-        if math.isfinite(way)
-    ]
-    low, high = np.min(heights, axis=0, initial=np.inf), np.max(heights, axis=0, initial=-np.inf)
-    return any(_same(levels[0], low[end]) and _same(levels[1], high[end]) for end in (0, 1)) if heights else False
+    ends = [[part.bounds[:, 2] for part in it.parts if part.name in names] for it in (shut, opened(shut, names, 1.0))]
+    return bool(np.isclose(ends, np.reshape(levels, (2, 1, 1)), rtol=_SAME).all(axis=(0, 1)).any())
 
 
-def has_shade(made: Blueprint, names: Sequence[str], shade: str) -> bool:
-    """Return True if parts are dark or light, as the eye sees it."""
+def _has_shade(made: Blueprint, names: Sequence[str], shade: str) -> bool:
+    """True if parts are dark or light, as the eye sees it."""
     grey = [float(np.dot(part.color or 0.5, (0.299, 0.587, 0.114))) for part in made.parts if part.name in names]
     return all(value < _DARK if shade == "dark" else value > _DARK for value in grey)
 
 
-def is_coupled(made: Blueprint, names: Sequence[str]) -> bool:
-    """Return True if one joint leads all those of some parts."""
+def _is_coupled(made: Blueprint, names: Sequence[str], _said: object) -> bool:
+    """True if one joint leads all those of some parts."""
     joints = [made.joint_above[name] for name in names if name in made.joint_above]
     return len({joint.mimic.leader if joint.mimic else joint.child for joint in joints}) == 1
 
 
-def on_both_sides(made: Blueprint, names: Sequence[str]) -> bool:
-    """Return True if as many of some parts are left of the middle as right of it."""
+def _on_both_sides(made: Blueprint, names: Sequence[str], _said: object) -> bool:
+    """True if as many of some parts are left of the middle as right of it."""
     middle = closed(made).assembly.bounds[:, 0].mean()
     return not np.sign(_boxes(made, names)[:, :, 0].mean(axis=1) - middle).sum()
 
@@ -644,8 +624,8 @@ def goes_towards(made: Blueprint, joint: BlueprintJoint, side: str) -> bool:
     return max(front, outwards) > _TOWARDS if side == "out" else front < -_TOWARDS
 
 
-def are_round(made: Blueprint, names: Sequence[str]) -> bool:
-    """Return True if two sides of each part are as long, and it fills no more of its box than a cylinder does."""
+def _are_round(made: Blueprint, names: Sequence[str], _said: object = None) -> bool:
+    """True if two sides of each part are as long, and it fills no more of its box than a cylinder does."""
     parts = [part for part in closed(made).parts if part.name in names]
     for part in parts:
         box = np.ptp(part.bounds, axis=0)
@@ -663,25 +643,16 @@ def _size_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str],
             yield f"{size}: {wanted:.3g} m was asked for, it is {sizes[0]:.3g} m"
 
 
-def _is_looked(made: Blueprint, wanted: PartRequest) -> bool:
-    """True if something on a part has a look of its own."""
-    own = [item.name for part in made.parts if part.appearance for item in part.appearance.materials[1:]]
-    return any((wanted.color or "") in name and (wanted.material or "") in name for name in own)
-
-
 def _side(made: Blueprint, side: str) -> tuple[int, int]:
     """Axis and sign of a side; the front of what rolls along x, as a car, is where that points."""
     axis, sign = _SIDES[side]
-    rolls = sum(
-        joint.kind is JointType.CONTINUOUS and joint.parent == made.parts[0].name and abs(joint.axis[1]) > _UPRIGHT
-        for joint in made.joints
-        if "wheel" in joint.child
-    )
-    return (1 - axis, -sign) if rolls > 1 and axis < 2 else (axis, sign)
+    base = made.parts[0].name
+    rolls = any("wheel" in it.child and it.parent == base and abs(it.axis[1]) > _UPRIGHT for it in made.joints)
+    return (1 - axis, -sign) if rolls and axis < 2 else (axis, sign)
 
 
-def is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
-    """Return True if all of some parts are at a side of the whole."""
+def _is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
+    """True if all of some parts are at a side of the whole."""
     axis, sign = _side(made, side)
     whole = closed(made).assembly.bounds[:, axis]
     near = _ASIDE * np.ptp(whole)
@@ -690,6 +661,19 @@ def is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
     return all(
         place.mean() > near or (abs(place.max() - reach) < near and place.min() > near - reach) for place in places
     )
+
+
+CHECKS: Mapping[str, tuple[Callable[[Blueprint, Sequence[str], Any], bool], str]] = {
+    "round": (_are_round, "not round"),
+    "corner": (_is_at, "not at the {}"),
+    "each_side": (_on_both_sides, "not as many on either side"),
+    "grid": (_stands_in, "columns and rows are not {0[0]} and {0[1]}"),
+    "sides": (_has_sides, "no side of it is as long as asked for"),
+    "levels": (_stands_at, "not so high at the ends of its way"),
+    "shade": (_has_shade, "not {}"),
+    "coupled": (_is_coupled, "they do not move together"),
+}
+"""What is said of parts and is no field of a request -> how it is measured, and what is said where it is otherwise."""
 
 
 def _is_hinged(made: Blueprint, names: Sequence[str], side: str) -> bool:

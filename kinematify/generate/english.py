@@ -99,7 +99,6 @@ extent 0 0.3: pocket handheld tiny mini
 extent 0.5 99: industrial giant huge
 endless: endlessly continuously all_the_way all_the_way_round full_circle right_round
 endless: round_and_round all_the_way_around right_around full_turn
-motion spin: go_round goes_round going_round
 stroke: travel stroke range way opening throw movement
 having: whose where when show
 having: with having has have featuring including plus containing holding carrying comes_with fitted_with equipped_with
@@ -127,7 +126,7 @@ filler: let would wants wanted object item thing model piece side sides hand end
 filler: approximately roughly approx exactly about around whole throughout part parts each_other altogether total s
 filler: already mounted attached fixed connected placed located positioned arranged painted finished coloured colored
 filler: color colour made built there here lines stacked set in_total fitted independently have design looking ones one
-filler: edge overall ornament decoration figure model unit rest while line done shaped this just only very
+filler: edge overall ornament decoration figure model rest while line done shaped this just only very
 plain: really quite rather too
 plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant fancy cute beautiful nice cool
 plain: robust strong durable sturdy solid professional practical simple plain standard typical normal regular usual
@@ -154,7 +153,7 @@ part: holder rack frame base body pole post chain latch axle bin slot hinge
 ROLES = pairs(
     "sign ,|having h|and &|dims x|range r|symmetric r|quantity q|number #|relative R|without W|relation L|lines =|"
     "beside T|both B|endless e|det d|color c|material c|side s|ordinal s|dimension D|refers P|state S|motion m|"
-    "degree g|shade f|stative t|stroke k|limit p|place p|like Y|be b|where v|plain f|part w|use u|form a|filler _"
+    "degree g|shade a|stative t|stroke k|limit p|place p|like Y|be b|where v|plain f|part w|use u|form a|filler _"
 )
 """Class of a word -> the letter that stands for it in patterns; the first one counts."""
 OF_SOME = re.compile(
@@ -210,6 +209,7 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     ),
     (r"(?<=[a-z])-(?=[a-z])", " "),
     (r"\bw/ ?", "with "),
+    (r"^((?:an? |the |my )?(?:\w+ )?)pair of ", r"\1"),
     ("&", " and "),
     (r"(?<=\d),(?=\d{3}\b)", ""),
     (r"\bhalf an? (?=(?:met|foot|inch))", "0.5 "),
@@ -237,9 +237,13 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         rf"((?:rotat|turn|swivel|spin|tilt|swing)\w*(?: (?:up|down|by|to|through))*) ({_NUMBER})(?=$|[,.;]| and )",
         r"\1 \2 deg",
     ),
+    (r"(?<!merry )\bgo(?:es|ing)? round(?! (?:the|a|its)\b)", "turn endlessly"),
     (rf"(±|\bat) ?({_NUMBER})(?=$|[,.;]| and )", r"\1 \2 deg"),
     (r"(?:from )?\b(?:flat|horizontal|level|closed|shut|upright|vertical) (?:up )?to (?=\d+ ?(?:deg|°))", "0 to "),
-    (r"(?:(?<=long|wide|high|tall|deep) |\bwhen )(?:(?:when|it|is|they|are|fully) )*(?:closed|shut)\b", ""),
+    (
+        r"(?:(?<=long|wide|high|tall|deep|. cm|. mm| \d m) |\bwhen )(?:(?:when|it|is|fully) )*(?:closed|shut)\b",
+        "",
+    ),
     (r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick|across)\b)", " inch "),
 )
 """Spelling, and how it is read."""

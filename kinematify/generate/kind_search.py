@@ -93,16 +93,11 @@ def repaired(word: str, known: frozenset[str]) -> str | None:
 
     None if there is none.
     """
-    if len(word) < 5 or word in known:
-        return None
-    near = difflib.get_close_matches(word, known, n=3, cutoff=0.7)
-    return next((other for other in near if other[0] == word[0] and _one_letter_off(word, other)), None)
-
-
-def _one_letter_off(one: str, other: str) -> bool:
-    start = next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
-    a, b = one[start:], other[start:]
-    return a[1:] == b[1:] or a[1:] == b or a == b[1:] or sorted(a) == sorted(b)
+    for other in difflib.get_close_matches(word, known, n=3, cutoff=0.7) if len(word) > 4 and word not in known else ():
+        is_slip = sorted(other) == sorted(word) or abs(len(other) - len(word)) == 1
+        if other[0] == word[0] and is_slip:
+            return other
+    return None
 
 
 def nearest_kinds(text: str, count: int = 5) -> list[Kind]:
@@ -118,17 +113,11 @@ def nearest_kinds(text: str, count: int = 5) -> list[Kind]:
 
 
 def _scores(words: Sequence[str], family: Kind) -> Iterator[float]:
-    parts = {key for item in family.parameters for word in (item.name, *item.words) for key in key_of(word)}
-    parts |= {key for said in (*family.part_words, *sum(family.part_words.values(), ())) for key in key_of(said)}
-    shared = 0.3 * len(parts & set(words[1:]))
     for name in family.words:
-        own = key_of(name)
-        exact = 3.0 * (own == tuple(words[: len(own)]))
-        heads = max((1.5 * 0.9**k for k, word in enumerate(words) if word == own[-1]), default=0.0)
-        others = sum(0.5 * 0.9**k for k, word in enumerate(words) if word in own[:-1])
-        alike = max((0.8 * 0.9**k for k, word in enumerate(words) if _does_the_same(word, own[-1])), default=0.0)
-        spelt = 0.4 * max((difflib.SequenceMatcher(None, word, own[-1]).ratio() for word in words[:3]), default=0.0)
-        yield exact + max(heads, alike) + others + shared + spelt - 0.05 * len(own)
+        *others, head = key_of(name)
+        alike = ((word == head) + 0.6 * _does_the_same(word, head) + 0.4 * (word in others) for word in words)
+        spelt = difflib.SequenceMatcher(None, "".join(words[:1]), head).ratio()
+        yield 0.4 * spelt + sum(much * 0.9**k for k, much in enumerate(alike)) - 0.05 * len(others)
 
 
 @cache

@@ -8,6 +8,7 @@ is the kind's name, or if a field took it that was measured, or if a part is cal
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,22 +16,15 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.delivery import (
+    CHECKS,
     BuildResult,
-    are_round,
     count_parameter,
     deliver,
     goes_towards,
-    has_shade,
-    has_sides,
-    is_at,
-    is_coupled,
     length_names,
     moves_so,
     names_called,
-    on_both_sides,
     sides_meant,
-    stands_at,
-    stands_in,
     stem_of,
 )
 from kinematify.generate.english import OF_SOME, ROLES, WORDS, Unit, read_units, values_of, vocabulary
@@ -61,6 +55,7 @@ _STILL = words_of("shelf compartment top back front bottom side rack frame")
 """Nouns that are open, and do not stand open."""
 _NAMED = words_of("tilt pan lift swing")
 """Motions that are nouns behind an article."""
+_THE = ("the", "its", "their")
 _CONTENT = "qxr#csSmMNHnZwagBLWk=Te"
 """Roles of words that ask for something."""
 _NOUN = (
@@ -81,7 +76,7 @@ _PHRASES = {
     "hinge": "H[pdP_i]*(?P<edge>s)_*",
     "verb": "(?P<words>(?:g(?!b)|[mMNSHtke])(?:[mMNSHgtkevf_dP]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
     "(?:[piodfvb_]*(?P<far>[qr])(?!D)(?:B|ok|k|(?P<then>[Sv]+))?)?",
-    "attribute": "[cqxs]",
+    "attribute": "[cqxs]|a(?=c)",
     "each": "P",
     "rest": ".",
 }
@@ -94,17 +89,7 @@ Facts = dict[str, Any]
 """Of `PartRequest`; besides, `grid` (columns and rows, 0 of what nobody said), `each_side`, `per` (a noun), `round`,
 `corner` (a second side), `sides` (lengths of which nobody said the dimension), `levels` (how high it is at both ends of
 its way), `shade` and `coupled`; and, until a noun is found, `article` and `pick` (the left one)."""
-_INNER = ("grid", "each_side", "per", "round", "corner", "sides", "levels", "shade", "coupled")
-_OTHERWISE = {
-    "round": "not round",
-    "corner": "not at the {}",
-    "each_side": "not as many on either side",
-    "sides": "no side of it is as long as asked for",
-    "levels": "not so high at the ends of its way",
-    "shade": "not {}",
-    "coupled": "they do not move together",
-}
-"""What is said of parts that is no field of a request -> how it is otherwise."""
+_INNER = (*CHECKS, "per")
 _OPPOSITE = {"left": "right", "right": "left"}
 
 
@@ -149,12 +134,9 @@ class Sentence:
     """By noun; the whole by an empty one."""
     ahead: Facts = field(default_factory=dict)
     """Facts of the next noun: a row of knobs, no doors, pull the handle."""
-    faults: list[str] = field(default_factory=list)
-    """Values that the kind cannot have."""
     notes: list[str] = field(default_factory=list)
     moves: list[tuple[str, Any, list[int]]] = field(default_factory=list)
     """Motions and form of the whole, with the units that say it."""
-    copies: int = 1
     subject: str = ""
     """Noun of the last part; empty for the whole."""
     listed: tuple[str, ...] = ()
@@ -184,12 +166,17 @@ class Sentence:
         self._assign_roles({})
         first = _match("[^wacsmSNMntDuTB]*", self.roles, 0).end() % len(self.roles)
         limit = _match(_LIMIT, self.roles, first + 1).end()
-        found = self._named(words, limit)
-        for k in range(limit) if not found else ():
-            if self.roles[k] in "wa" and (other := repaired(words[k], words_of_names())):
-                self.notes.append(f"Read {self._text(k)!r} as {other!r}.")
-                words[k] = other
-                found = self._named(words, limit)
+        slips = {
+            word: repaired(word, words_of_names())
+            for word, role in zip(words, self.roles, strict=False)
+            if role in "wa"
+        }
+        if not (found := self._named(words, limit)) and (
+            found := self._named([slips.get(w) or w for w in words], limit)
+        ):
+            self.notes += [
+                f"Read {word!r} as {slips[word]!r}." for word in words[found[1] : found[2]] if slips.get(word)
+            ]
         if not found:
             head = self._text(first, limit) or self.text
             near = nearest_kinds(head)
@@ -248,15 +235,11 @@ class Sentence:
         Raises:
             InputError: They contradict each other.
         """
-        head, name = lemma(self._text(self.stop - 1)), self._text(self.stop - 1)
         begin = self.roles.rfind("d", 0, self.start) + 1
         self._take(range(begin if self.roles.count("d", 0, begin) < 2 else 0), "-")
         facts, used = self._described(begin, self.start)[:2]
-        count, pair = facts.pop("count", 1), "pair" in self._text(begin, self.start)
-        if name != head and not (pair and any(word.endswith(name) for word in self.family.words)):
-            self.copies = count
-        if pair or self.copies == count:
-            self._take(k for k in used if self.roles[k] == "#")
+        if facts.pop("count", 1) != 1:  # two chairs
+            used = [k for k in used if self.roles[k] != "#"]
         self._add("", used, **facts)
         k = self.stop
         while k < len(self.units):
@@ -312,9 +295,8 @@ class Sentence:
     def _having(self, found: Match) -> None:
         k = found.start()
         self.ahead = {"count": 0} if found[0] == "W" and self._span(k + 1) else {}
-        if self.ahead:
-            self._take([k])
-        self.is_shown = self._text(k, k + 2) in ("with the", "with its", "with their") or self._text(k) == "show"
+        self._take([k] * len(self.ahead))
+        self.is_shown = bool(re.match("with (the|its|their)|show", self._text(k, k + 2)))
         self.fresh = False
 
     # ---- nouns -----------------------------------------------------------------------------------------------------
@@ -392,19 +374,21 @@ class Sentence:
     def _modifier(self, k: int, stop: int, facts: Facts, used: list[int], *, is_part: bool) -> int:
         """Read one unit before a noun; returns how many were read."""
         word, behind, role = self._text(k), self._text(k + 1), self.roles[k]
-        look = "color" if self._mean(k, "color") else "material"
         said: Facts = {}
         if role == "#":
-            number = float(self._mean(k, "number").replace(",", "."))
-            if k + 1 < stop and behind == lemma(behind) and number > 1 and self._text(stop) == lemma(self._text(stop)):
+            number = self._mean(k, "number")
+            if (
+                k + 1 < stop
+                and behind == lemma(behind)
+                and number != "1"
+                and self._text(stop) == lemma(self._text(stop))
+            ):
                 if self.roles[k + 1] == "n":  # a six drawer dresser
-                    self._add(behind, [k, k + 1], count=int(number))
+                    self._add(behind, [k, k + 1], count=int(float(number)))
                 return 1 + (self.roles[k + 1] in "nwa")  # or a three spoke handle, of which nothing is known
-            said = {"count": int(number)} if number == int(number) and "count" not in facts else {}
+            said = {"count": int(number)} if number.isdigit() else {}
         elif role in "qx":
             return self._size(k, facts, used)
-        elif value := self._mean(k, look):
-            said = {look: value} if facts.get(look, value) == value else {}
         elif role == "s":
             facts["pick"] = f"{facts.pop('pick', '')} {word}".strip()
             used.append(k)
@@ -413,16 +397,14 @@ class Sentence:
         elif role == "S":
             said = {"open": float(self._mean(k - 1, "degree") or self._mean(k, "state"))}
             used += [k - 1] if self.roles[k - 1] == "g" else []
-        elif what := next((what for what in ("round", "shade") if self._mean(k, what)), ""):
+        elif what := next((what for what in ("color", "material", "round", "shade") if self._mean(k, what)), ""):
             said = {what: self._mean(k, what)}
         elif role in "mMH" and not (is_part and self._mean(k, "name") and not self._mean(k + 1, "towards")):
             said = {"motion": self._mean(k, "motion")}
             if towards := self._mean(k + 1, "towards"):
                 said["towards"] = towards
                 used.append(k + 1)
-        for name, value in said.items():
-            facts.setdefault(name, value)
-        used += [k] if said else []
+        used += [k] * (said == {name: facts.setdefault(name, value) for name, value in said.items()} != {})
         return 1
 
     def _choice(self, k: int, end: int, facts: Facts, head: int | None) -> int:
@@ -481,21 +463,15 @@ class Sentence:
 
     def _size(self, k: int, facts: Facts, used: list[int]) -> int:
         """Read a size and the dimension behind it; returns how many units were read."""
-        numbers, sizes = values_of(self._text(k)), facts.setdefault("size", {})
-        value, si = numbers[-1]
-        used.append(k)
-        if self.roles[k] == "x" and si:
-            facts["sides"] = tuple(number for number, _ in numbers)
+        numbers, step = values_of(self._text(k)), k + 1 + (self.roles[k + 1 : k + 3] in ("iD", "oD"))
+        if numbers[-1][1] != "m":
             return 1
-        step = k + 1 + (self.roles[k + 1 : k + 3] in ("iD", "oD"))
-        if si == "m" and (name := self._mean(step, "dimension")):
-            sizes[name] = value
+        used.append(k)
+        if self.roles[k] == "q" and (name := self._mean(step, "dimension")):
+            facts.setdefault("size", {})[name] = numbers[0][0]
             used.append(step)
             return step + 1 - k
-        if si == "m":
-            facts["sides"] = (value,)
-        else:
-            used.remove(k)
+        facts["sides"] = tuple(number for number, _ in numbers)
         return 1
 
     def _attribute(self, found: Match) -> int:
@@ -521,9 +497,8 @@ class Sentence:
         owner = owner or usual
         for other in (self.things.get(owner, {}).get("motion", usual), usual):
             how = other if how == "move" else how
-        fits = (how in ("slide", "lift")) is (si == "m")
-        facts |= {"range": tuple(sorted((low, value))), "motion": how} if fits else {"motion": how}
-        self._add(owner, range(*found.span()) if fits else (), **facts)
+        if (how in ("slide", "lift")) is (si == "m"):
+            self._add(owner, range(*found.span()), range=tuple(sorted((low, value))), motion=how, **facts)
 
     def _hinge(self, found: Match) -> None:
         self._fact(found, hinge=self._mean(found.start("edge"), "side"))
@@ -554,10 +529,8 @@ class Sentence:
                 share = float(self._mean(j, "degree"))
             elif role in "mMNHS":
                 how = how or str(self._mean(j, "motion") or "move")
-            elif role == "e" and share is None:
-                how = "spin"
-            elif role == "e":
-                share = 1.0  # folded all the way down
+            elif role == "e":  # turns, or is folded, all the way
+                how, share = ("spin", None) if share is None else (how, 1.0)
             stands |= role == "t"
         heads = [side for j in range(k, found.end()) if (side := self._mean(j, "towards"))]
         facts: Facts = {"towards": heads[0]} if heads and (how or share) else {}
@@ -566,8 +539,6 @@ class Sentence:
         if how and far < 0 and self.roles[found.end() - 1] in "md" and self._span(found.end()):
             self.ahead = {"motion": how, **facts}  # pull the handle
             self._take(range(*found.span()))
-        elif self._mean(found.start("then"), "state") == "0":  # 160 cm closed
-            self._fact(found, owner, sides=(values_of(self._text(far))[0][0],))
         elif not (share is None or owner or how) and (place := re.search("s[^,hR]*$", self.roles[:k])):
             self._take(range(place.start(), found.end()), "!")  # the top half is open
         else:
@@ -589,10 +560,8 @@ class Sentence:
         self._take(range(*found.span()), "-")
 
     def _both_sides(self, found: Match) -> None:
-        facts = self.things.setdefault(self.subject, {})
-        facts["each_side"] = True
-        self._take(range(*found.span()), self.subject)
-        if "count" in facts and self._text(found.start() + 1) != "both":
+        self._fact(found, self.subject, each_side=True)
+        if "count" in (facts := self.things.get(self.subject, {})) and self._text(found.start() + 1) != "both":
             facts["count"] *= 2
 
     def _noun(self, found: Match) -> None:
@@ -600,7 +569,7 @@ class Sentence:
         in_place = self.roles[found.start()] in "pio"
         k, subject = found.start() + in_place, self.subject
         if span := self._span(k):
-            last, the = self._text(span[1] - 1), self._text(k) in ("the", "its", "their")
+            last, the = self._text(span[1] - 1), self._text(k) in _THE
             is_place = bool(self._owner) and (the or (last == lemma(last) and self.roles[k] not in "d#"))
             noun = self._part(k, *span, is_place=in_place and (is_place or lemma(last) in _WHERE))
             is_more = noun not in self.listed and re.fullmatch(",*&?", self.roles[self.list_end : k])
@@ -620,7 +589,7 @@ class Sentence:
         k, subject, other = found.start(), self.subject, ""
         step, span, end = int(self._mean(k, "relation")), self._span(k + 1), k + 1 + (self.roles[k + 1] == "P")
         if span and subject and self.roles[k + 1] != "P":
-            is_place = self._text(k + 1) in ("the", "its", "their")
+            is_place = self._text(k + 1) in _THE
             other = self._part(k + 1, *span, is_place=is_place)
             self.subject, end = subject if is_place else self.subject, span[1]
         elif subject:
@@ -637,25 +606,17 @@ class Sentence:
 
     def _rest(self, found: Match) -> None:
         """Pass over a word, or read in which direction what was named moves."""
-        k, facts = found.start(), self.things.get(self._owner, ())
-        if "motion" in facts and (side := self._mean(k, "towards")):
+        if "motion" in self.things.get(self._owner, ()) and (side := self._mean(found.start(), "towards")):
             self._fact(found, towards=side)
-        elif facts and self._mean(k, "coupled"):
-            self._fact(found, coupled=True)
 
     # ---- the whole -------------------------------------------------------------------------------------------------
 
     def _set(self, name: str, value: Any, units: Iterable[int]) -> None:
-        """Set a parameter of the whole."""
-        units = list(units)
-        try:
+        """Set a parameter of the whole; words for what it cannot be are not read."""
+        with suppress(InputError):
             value = checked(self.family, name, value)
-        except InputError as error:
-            self.faults.append(f"{' '.join(map(self._text, units))}: {str(error).rstrip('.')}")
-            self._take(units)
-            return
-        if self.values.setdefault(name, value) == value:
-            self._take(units)
+            if self.values.setdefault(name, value) == value:
+                self._take(units)
 
     def _whole(self, what: str, value: Any, units: Iterable[int]) -> None:
         units = list(units)
@@ -752,7 +713,6 @@ class Sentence:
                 "parameters": {**{name: value for name, value in usual.items() if name not in stated}, **self.values},
                 "size": sizes,
                 "parts": parts,
-                "copies": self.copies,
                 "instead_of": self.instead_of,
             },
             source=f"text {self.text!r}",
@@ -782,7 +742,7 @@ class Sentence:
                 listed.append(f"{self._text(k)}: it is {large:.2g} m large")
         return replace(
             made,
-            differences=(*self.faults, *listed),
+            differences=tuple(listed),
             unread=tuple(self._unread(taken, lost, there)),
             notes=tuple(self.notes),
             facts={"text": self.text, **made.facts},
@@ -790,11 +750,9 @@ class Sentence:
 
     def _holds(self, what: str, value: Any, word: str, made: Blueprint) -> bool:
         """True if what is said of the whole is so; that it folds or rocks is only known of a kind that says so."""
-        base = [made.parts[0].name]
-        if what == "coupled":
-            return is_coupled(made, [joint.child for joint in made.joints])
-        if what in ("round", "shade"):
-            return are_round(made, base) if what == "round" else has_shade(made, base, value)
+        if what in CHECKS:
+            whole = made.joints if what == "coupled" else made.parts[:1]
+            return CHECKS[what][0](made, [getattr(item, "child", "") or item.name for item in whole], value)
         if value == "hinge" and not re.match("turn|rotat|swing|hing|pivot", word):
             about = (*self.family.words, self.family.about, *self.family.part_words)
             return any(word[:4] in said.lower() for said in about)
@@ -807,44 +765,27 @@ class Sentence:
 
     def _inner_faults(self, facts: Facts, made: Blueprint, names: list[str]) -> Iterator[str]:
         """What is said of parts, is no field of a request, and is otherwise."""
-        columns, rows = (lines or len(names) for lines in facts.get("grid", (1, 1)))
-        if "grid" in facts and not stands_in(made, names, columns, rows):
-            yield f"columns and rows are not {columns} and {rows}"
-        checks = {
-            "round": lambda _: are_round(made, names),
-            "corner": lambda side: is_at(made, names, side),
-            "each_side": lambda _: on_both_sides(made, names),
-            "sides": lambda sides: has_sides(made, names, sides),
-            "levels": lambda levels: stands_at(made, names, levels),
-            "shade": lambda shade: has_shade(made, names, shade),
-            "coupled": lambda _: is_coupled(made, names),
-        }
-        for what, holds in checks.items():
-            if what in facts and not holds(facts[what]):
-                yield _OTHERWISE[what].format(facts[what])
+        for what, (holds, why) in CHECKS.items():
+            if what in facts and not holds(made, names, facts[what]):
+                yield why.format(facts[what])
         if (whose := facts.get("per")) and len(names) % max(len(names_called(self.family, made, whose)), 1):
             yield f"{len(names)} there, not as many for each {whose}"
 
     def _unread(self, taken: Mapping[int, str], lost: set[str], there: set[str]) -> Iterator[str]:
         """Words of content that nothing took, or a noun that is no part; a quotation with the words between them."""
-        found: list[int] = []
-        head = lemma(self._text(self.stop - 1))
+        quoted, head = [list[int]()], lemma(self._text(self.stop - 1))
         for k, role in enumerate(self.roles[: len(self.units)]):
-            owner = taken.get(k)
-            words = {word.removesuffix("ed") for word in key_of(self._text(k))}
-            is_known = words <= there or kind_called([*key_of(self._text(k)), head]) is self.family
-            asks = role in _CONTENT or any(self._mean(k, what) for what in ("towards", "aside", "shade", "coupled"))
+            owner, words = taken.get(k), key_of(self._text(k))
+            is_known = {word.removesuffix("ed") for word in words} <= there or kind_called(
+                [*words, head]
+            ) is self.family
+            asks = role in _CONTENT or {"towards", "aside", "coupled"} & self.units[k].means.keys()
             if owner == "!" or (asks and (owner in lost or (owner is None and not is_known))):
-                found.append(k)
-            elif found and asks:
-                yield self._quoted(found[0], found[-1] + 1)
-                found = []
-        if found:
-            yield self._quoted(found[0], found[-1] + 1)
-
-    def _quoted(self, k: int, end: int) -> str:
-        """Return what stands there in the text."""
-        return re.sub(r" (?=[^\w\s'\"±.~-])", "", self._text(k, end))
+                quoted[-1].append(k)
+            elif asks:
+                quoted.append([])
+        for units in filter(None, quoted):
+            yield re.sub(r" (?=[^\w\s'\"±.~-])", "", self._text(units[0], units[-1] + 1))
 
 
 def _match(pattern: str, text: str, k: int) -> Match:

@@ -151,7 +151,6 @@ class Request(_Fields):
     parts: dict[str, PartRequest] = Field(
         {}, description="Name of parts -> what is asked of them; 'left door' or 'second drawer' means one of them."
     )
-    copies: int = Field(1, ge=1, le=12, description="How many, side by side.")
     instead_of: str = Field("", description="What was asked for, where the kind is only the nearest one.")
 
     @property
@@ -251,9 +250,7 @@ def with_settings(values: Mapping[str, Any], settings: Mapping[str, str]) -> dic
     for key, value in settings.items():
         name, _, fact = key.partition(".")
         field, _, dimension = fact.partition(".")
-        if key == "copies":
-            made[key] = value
-        elif name == "size" and fact:
+        if name == "size" and fact:
             made["size"][fact] = value
         elif field in PartRequest.model_fields:
             part = parts.setdefault(name.replace("_", " "), {})

@@ -11,7 +11,6 @@ import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.truth import GroundTruth, TrueJoint
-from kinematify.robot.appearance import joined as joined_appearances
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion, transformed
@@ -153,41 +152,6 @@ class Blueprint:
 
         loops = tuple(replace(loop, pivot=factor * flip * loop.pivot) for loop in self.loops)
         return replace(self, parts=tuple(map(part, self.parts)), joints=tuple(map(joint, self.joints)), loops=loops)
-
-    def repeated(self, count: int, pitch: float) -> Blueprint:
-        """Return several of it along x, their base links one part.
-
-        Args:
-            count: How many.
-            pitch: From one to the next [m].
-        """
-        base, *others = self.parts
-        steps = [(k, np.array([k * pitch, 0.0, 0.0])) for k in range(count)]
-        whole = replace(
-            base,
-            vertices=np.concatenate([base.vertices + step for _, step in steps]),
-            faces=np.concatenate([base.faces + k * len(base.vertices) for k, _ in steps]),
-            appearance=joined_appearances([base.appearance] * count, [len(base.faces)] * count),
-        )
-
-        def name(given: str, k: int) -> str:
-            return given if k == 0 or given == base.name else f"{given}_{k + 1}"
-
-        parts = [
-            replace(part, name=name(part.name, k), vertices=part.vertices + s) for k, s in steps for part in others
-        ]
-        joints = [
-            replace(
-                joint, parent=name(joint.parent, k), child=name(joint.child, k), pivot=joint.pivot + step,
-                mimic=joint.mimic and replace(joint.mimic, joint=name(joint.mimic.joint, k)),
-            )
-            for k, step in steps for joint in self.joints
-        ]  # fmt: skip
-        loops = [
-            replace(loop, one=name(loop.one, k), other=name(loop.other, k), pivot=loop.pivot + step)
-            for k, step in steps for loop in self.loops
-        ]  # fmt: skip
-        return replace(self, parts=(whole, *parts), joints=tuple(joints), loops=tuple(loops))
 
 
 def _placed(part: Part, transform: FloatArray) -> Part:
