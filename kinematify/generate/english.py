@@ -237,6 +237,7 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         rf"((?:rotat|turn|swivel|spin|tilt|swing)\w*(?: (?:up|down|by|to|through))*) ({_NUMBER})(?=$|[,.;]| and )",
         r"\1 \2 deg",
     ),
+    (r"\blight (?=(?:oak|pine|wood|wooden|beech|birch|maple|walnut|ash)\b)", "pale "),
     (r"(?<!merry )\bgo(?:es|ing)? round(?! (?:the|a|its)\b)", "turn endlessly"),
     (rf"(±|\bat) ?({_NUMBER})(?=$|[,.;]| and )", r"\1 \2 deg"),
     (r"(?:from )?\b(?:flat|horizontal|level|closed|shut|upright|vertical) (?:up )?to (?=\d+ ?(?:deg|°))", "0 to "),

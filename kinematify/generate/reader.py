@@ -56,6 +56,7 @@ _STILL = words_of("shelf compartment top back front bottom side rack frame")
 _NAMED = words_of("tilt pan lift swing")
 """Motions that are nouns behind an article."""
 _THE = ("the", "its", "their")
+_LOOKS = words_of("color material round shade")
 _CONTENT = "qxr#csSmMNHnZwagBLWk=Te"
 """Roles of words that ask for something."""
 _NOUN = (
@@ -397,8 +398,8 @@ class Sentence:
         elif role == "S":
             said = {"open": float(self._mean(k - 1, "degree") or self._mean(k, "state"))}
             used += [k - 1] if self.roles[k - 1] == "g" else []
-        elif what := next((what for what in ("color", "material", "round", "shade") if self._mean(k, what)), ""):
-            said = {what: self._mean(k, what)}
+        elif looks := _LOOKS & self.units[k].means.keys():
+            said = {what: self._mean(k, what) for what in looks}
         elif role in "mMH" and not (is_part and self._mean(k, "name") and not self._mean(k + 1, "towards")):
             said = {"motion": self._mean(k, "motion")}
             if towards := self._mean(k + 1, "towards"):
