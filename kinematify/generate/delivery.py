@@ -52,7 +52,8 @@ _JOINTS = words_of("hinge slide tilt pan spin")
 """Nouns that mean what moves so where no part is called so: what moves most of the object."""
 _ALIKE = pairs(
     "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
-    "cab cabin house|cabin cab house|boom jib|sail blade rotor|blade rotor|wing leaf|screen display lid|"
+    "cab cabin house|cabin cab house|boom jib|sail blade rotor|blade rotor|"
+    "wing leaf|leaf sash door|casement sash|screen display lid|"
     "display screen|dial knob|"
     "handle lever|lever handle|arm lever|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|"
     "spout neck|rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|"
@@ -132,7 +133,7 @@ def _called(family: Kind, blueprint: Blueprint, noun: str) -> list[Part]:
         meant.update(map(_joined, counted.nouns))
     stems = {part.name: stem_of(part.name) for part in blueprint.parts}
     exact = [part for part in blueprint.parts if _joined(stems[part.name]) in meant]
-    ends = [part for part in blueprint.parts if key_of(stems[part.name].replace("_", " "))[-1:] == key_of(noun)]
+    ends = [part for part in blueprint.parts if _joined(stems[part.name]).endswith(wanted)]
     others = _ALIKE.get(wanted, "").split()
     alike = [part for part in blueprint.parts if _joined(stems[part.name]) in others]
     base = list(blueprint.parts[:1]) if wanted in _BASE else []
@@ -586,14 +587,14 @@ def _stands_at(made: Blueprint, names: Sequence[str], levels: tuple[float, float
 
 def _has_shade(made: Blueprint, names: Sequence[str], shade: str) -> bool:
     """True if parts are dark or light, as the eye sees it."""
-    grey = [float(np.dot(part.color or 0.5, (0.299, 0.587, 0.114))) for part in made.parts if part.name in names]
+    grey = [np.dot(part.color or 0.5, (0.299, 0.587, 0.114)) for part in made.parts if part.name in names]
     return all(value < _DARK if shade == "dark" else value > _DARK for value in grey)
 
 
 def _is_coupled(made: Blueprint, names: Sequence[str], _said: object) -> bool:
     """True if one joint leads all those of some parts."""
     joints = [made.joint_above[name] for name in names if name in made.joint_above]
-    return len({joint.mimic.leader if joint.mimic else joint.child for joint in joints}) == 1
+    return len({joint.mimic.joint if joint.mimic else joint.child for joint in joints}) == 1
 
 
 def _on_both_sides(made: Blueprint, names: Sequence[str], _said: object) -> bool:

@@ -93,11 +93,8 @@ def repaired(word: str, known: frozenset[str]) -> str | None:
 
     None if there is none.
     """
-    for other in difflib.get_close_matches(word, known, n=3, cutoff=0.7) if len(word) > 4 and word not in known else ():
-        is_slip = sorted(other) == sorted(word) or abs(len(other) - len(word)) == 1
-        if other[0] == word[0] and is_slip:
-            return other
-    return None
+    near = [*difflib.get_close_matches(word, known, cutoff=0.85), *(it for it in known if sorted(it) == sorted(word))]
+    return next((it for it in near if it[0] == word[0]), None) if len(word) > 4 and word not in known else None
 
 
 def nearest_kinds(text: str, count: int = 5) -> list[Kind]:

@@ -42,20 +42,21 @@ from kinematify.generate.procedural.layout import CELLS
 from kinematify.generate.request import request_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.parameter import Parameter
     from kinematify.generate.request import Request
 
-_WHERE = words_of("panel base body frame floor wall ground edge corner surface angle end")
+_WHERE = words_of("panel base body frame floor wall ground edge corner surface angle end hand side")
 """Nouns of places, which are no parts where something is only on them."""
 _STILL = words_of("shelf compartment top back front bottom side rack frame")
 """Nouns that are open, and do not stand open."""
 _NAMED = words_of("tilt pan lift swing")
 """Motions that are nouns behind an article."""
 _THE = ("the", "its", "their")
+_ASKING = words_of("towards aside coupled")
 _LOOKS = words_of("color material round shade")
 _CONTENT = "qxr#csSmMNHnZwagBLWk=Te"
 """Roles of words that ask for something."""
@@ -428,7 +429,7 @@ class Sentence:
             return after
         return 0
 
-    def _add(self, noun: str, units: Iterable[int], **facts: Any) -> str:
+    def _add(self, noun: str, units: Sequence[int], **facts: Any) -> str:
         """Give what is said to a part, or to the whole; what it has otherwise is not read. Returns the noun."""
         if not noun:
             for what, value in facts.items():
@@ -570,8 +571,10 @@ class Sentence:
         in_place = self.roles[found.start()] in "pio"
         k, subject = found.start() + in_place, self.subject
         if span := self._span(k):
-            last, the = self._text(span[1] - 1), self._text(k) in _THE
-            is_place = bool(self._owner) and (the or (last == lemma(last) and self.roles[k] not in "d#"))
+            last = self._text(span[1] - 1)
+            is_place = bool(self._owner) and (
+                self._text(k) in _THE or (last == lemma(last) and self.roles[k] not in "d#")
+            )
             noun = self._part(k, *span, is_place=in_place and (is_place or lemma(last) in _WHERE))
             is_more = noun not in self.listed and re.fullmatch(",*&?", self.roles[self.list_end : k])
             self.listed, self.list_end = (*(self.listed if is_more else ()), noun), span[1]
@@ -619,8 +622,7 @@ class Sentence:
             if self.values.setdefault(name, value) == value:
                 self._take(units)
 
-    def _whole(self, what: str, value: Any, units: Iterable[int]) -> None:
-        units = list(units)
+    def _whole(self, what: str, value: Any, units: Sequence[int]) -> None:
         if what == "sides":
             what, value = "size", dict(zip(sides_meant(self.family, value), value, strict=False))
         if what == "size":
@@ -727,7 +729,8 @@ class Sentence:
         """
         made = deliver(self.request, seed=seed)
         blueprint, taken = made.blueprint, dict(self.taken)
-        lost = set(made.unmeasured)
+        there = {key for part in blueprint.parts for key in key_of(stem_of(part.name).replace("_", " "))}
+        lost = {noun for noun in made.unmeasured if self.things[noun] or not there.issuperset(key_of(noun))}
         listed = [why for why in made.differences if why.split(":")[0] not in lost]
         for what, value, units in self.moves:
             if not self._holds(what, value, self._text(units[0]), blueprint):
@@ -735,8 +738,7 @@ class Sentence:
         for noun, facts in self.things.items():
             if noun not in lost and (names := names_called(self.family, blueprint, noun)):
                 listed += [f"{noun}: {why}" for why in self._inner_faults(facts, blueprint, names)]
-        there = {key for part in blueprint.parts for key in key_of(stem_of(part.name).replace("_", " "))}
-        large = float(np.ptp(blueprint.assembly.bounds, axis=0).max())
+        large = np.ptp(blueprint.assembly.bounds, axis=0).max()
         for k in range(self.stop + 1) if not self.request.size else ():
             smallest, largest = map(float, (self._mean(k, "extent") or f"0 {large}").split())
             if not smallest <= large <= largest:
@@ -752,8 +754,8 @@ class Sentence:
     def _holds(self, what: str, value: Any, word: str, made: Blueprint) -> bool:
         """True if what is said of the whole is so; that it folds or rocks is only known of a kind that says so."""
         if what in CHECKS:
-            whole = made.joints if what == "coupled" else made.parts[:1]
-            return CHECKS[what][0](made, [getattr(item, "child", "") or item.name for item in whole], value)
+            moving = [joint.child for joint in made.joints]
+            return CHECKS[what][0](made, moving if what == "coupled" else [made.parts[0].name], value)
         if value == "hinge" and not re.match("turn|rotat|swing|hing|pivot", word):
             about = (*self.family.words, self.family.about, *self.family.part_words)
             return any(word[:4] in said.lower() for said in about)
@@ -780,7 +782,7 @@ class Sentence:
             is_known = {word.removesuffix("ed") for word in words} <= there or kind_called(
                 [*words, head]
             ) is self.family
-            asks = role in _CONTENT or {"towards", "aside", "coupled"} & self.units[k].means.keys()
+            asks = role in _CONTENT or _ASKING & self.units[k].means.keys() or (k < self.start and _WHERE & {*words})
             if owner == "!" or (asks and (owner in lost or (owner is None and not is_known))):
                 quoted[-1].append(k)
             elif asks:
