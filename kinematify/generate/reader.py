@@ -137,7 +137,7 @@ class Sentence:
     ahead: Facts = field(default_factory=dict)
     """Facts of the next noun: a row of knobs, no doors, pull the handle."""
     notes: list[str] = field(default_factory=list)
-    moves: list[tuple[str, Any, list[int]]] = field(default_factory=list)
+    moves: list[tuple[str, Any, Sequence[int]]] = field(default_factory=list)
     """Motions and form of the whole, with the units that say it."""
     subject: str = ""
     """Noun of the last part; empty for the whole."""
