@@ -55,8 +55,8 @@ _CALLED = {
 _HANDLES = ("handle", "knob")
 """What may belong to a part instead of being one."""
 _KINDS = {
-    "wood": ("wood", "oak", "pine", "walnut"),
-    "metal": ("metal", "steel", "brass", "copper", "chrome"),
+    "wood": tuple(name for name, item in MATERIALS.items() if item.surface == "grain"),
+    "metal": tuple(name for name, item in MATERIALS.items() if item.surface == "metal" and name != "mirror"),
 }
 """What is of a material that is said in general."""
 

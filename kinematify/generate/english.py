@@ -253,7 +253,7 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
 def _meanings() -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     said = [(name, "color", color) for name, color in COLOR_WORDS.items()]
-    said += [(word, "material", name) for name, item in MATERIALS.items() for word in (name, *item.words.split())]
+    said += [(word, "material", name) for name, item in MATERIALS.items() for word in (name, *item.words)]
     for line in _TABLE.strip().splitlines():
         (what, _, value), words = (head := line.split(": "))[0].partition(" "), head[1].split()
         said += [(word.replace("_", " ").strip(), what, value or word) for word in words]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.parameter import pairs
+from kinematify.generate.procedural.parameter import pairs, phrases
 from kinematify.robot.appearance import Appearance, Material, Texture
 
 if TYPE_CHECKING:
@@ -72,47 +72,57 @@ class Substance:
     density: float
     """[kg/m^3]."""
     color: RGB
-    words: str = ""
-    """How people call it besides its name; woods within a fifth of its density."""
-    roughness: float = 0.5
+    roughness: float
     """As in `kinematify.robot.appearance.Material`."""
-    metallic: float = 0.0
-    opacity: float = 1.0
-    grain: bool = False
-    """Its own colour shows the grain of wood."""
+    surface: str
+    """``metal``, ``clear``, ``grain`` (its own colour shows the grain of wood) or ``plain``."""
+    words: tuple[str, ...]
+    """How people call it besides its name."""
 
 
-MATERIALS = {
-    "wood": Substance(
-        density=650.0,
-        color=(0.72, 0.53, 0.34),
-        words="wooden timber mdf plywood beech birch maple teak mahogany bamboo elm",
-        roughness=0.7,
-        grain=True,
-    ),
-    "oak": Substance(density=710.0, color=(0.76, 0.60, 0.39), words="oaken", roughness=0.7, grain=True),
-    "pine": Substance(density=510.0, color=(0.86, 0.71, 0.48), roughness=0.7, grain=True),
-    "walnut": Substance(density=640.0, color=(0.36, 0.24, 0.16), roughness=0.7, grain=True),
-    "steel": Substance(density=7850.0, color=(0.62, 0.64, 0.67), words="iron stainless", roughness=0.35, metallic=1.0),
-    "metal": Substance(
-        density=2700.0,
-        color=(0.70, 0.72, 0.75),
-        words="metallic aluminium aluminum",
-        roughness=0.35,
-        metallic=1.0,
-    ),
-    "brass": Substance(density=8500.0, color=(0.78, 0.62, 0.26), roughness=0.3, metallic=1.0),
-    "copper": Substance(density=8960.0, color=(0.72, 0.45, 0.30), roughness=0.3, metallic=1.0),
-    "chrome": Substance(density=7850.0, color=(0.82, 0.84, 0.86), words="chromed", roughness=0.1, metallic=1.0),
-    "plastic": Substance(density=1050.0, color=(0.90, 0.90, 0.88), words="abs nylon", roughness=0.45),
-    "glass": Substance(
-        density=2500.0, color=(0.70, 0.85, 0.90), words="glazed transparent", roughness=0.05, opacity=0.3
-    ),
-    "mirror": Substance(density=2500.0, color=(0.80, 0.86, 0.88), words="mirrored", roughness=0.02, metallic=1.0),
-    "rubber": Substance(density=1100.0, color=(0.15, 0.15, 0.16), roughness=0.95),
-    "ceramic": Substance(density=2400.0, color=(0.95, 0.95, 0.93), words="porcelain", roughness=0.15),
-    "cardboard": Substance(density=700.0, color=(0.76, 0.62, 0.45), words="paper", roughness=0.95),
-}
+_TABLE = """
+wood 650 0.72 0.53 0.34 0.7 grain wooden, timber, mdf, plywood, elm
+oak 710 0.80 0.65 0.42 0.7 grain oaken
+pine 510 0.91 0.77 0.53 0.7 grain spruce, pinewood
+beech 720 0.88 0.67 0.52 0.7 grain beechwood
+birch 680 0.93 0.85 0.70 0.7 grain maple, light wood, pale wood
+bamboo 700 0.85 0.72 0.36 0.7 grain
+teak 660 0.66 0.42 0.22 0.7 grain
+cherry 580 0.62 0.32 0.19 0.6 grain cherrywood
+mahogany 560 0.43 0.17 0.11 0.6 grain rosewood
+walnut 640 0.36 0.24 0.16 0.7 grain dark wood
+ebony 1000 0.14 0.11 0.09 0.5 grain
+steel 7850 0.62 0.64 0.67 0.35 metal stainless
+iron 7600 0.26 0.26 0.28 0.65 metal
+metal 2700 0.70 0.72 0.75 0.35 metal metallic
+aluminium 2700 0.80 0.81 0.82 0.5 metal aluminum
+brass 8500 0.80 0.64 0.24 0.3 metal
+bronze 8800 0.55 0.36 0.17 0.35 metal
+copper 8960 0.77 0.43 0.30 0.3 metal
+chrome 7850 0.84 0.87 0.91 0.1 metal chromed
+plastic 1050 0.90 0.90 0.88 0.45 plain abs, nylon
+glass 2500 0.70 0.85 0.90 0.05 clear glazed, transparent
+mirror 2500 0.80 0.86 0.88 0.02 metal mirrored
+rubber 1100 0.15 0.15 0.16 0.95 plain
+ceramic 2400 0.95 0.95 0.93 0.15 plain porcelain
+stone 2600 0.60 0.58 0.54 0.9 plain granite, concrete
+marble 2700 0.90 0.89 0.87 0.2 plain
+leather 900 0.38 0.22 0.13 0.6 plain
+cardboard 700 0.76 0.62 0.45 0.95 plain paper
+"""
+"""Name, density, red, green, blue, roughness, surface, and words for it."""
+
+
+def _substance(line: str) -> tuple[str, Substance]:
+    name, density, red, green, blue, roughness, surface, *said = line.split(" ", 7)
+    color = float(red), float(green), float(blue)
+    words = phrases(" ".join(said))
+    return name, Substance(
+        density=float(density), color=color, roughness=float(roughness), surface=surface, words=words
+    )
+
+
+MATERIALS = dict(map(_substance, _TABLE.strip().splitlines()))
 """Keyed by name."""
 
 _PLAIN: dict[str, RGB] = {
@@ -148,9 +158,10 @@ COLORS: dict[str, RGB] = _PLAIN | {
 COLOR_WORDS = {name: name for name in COLORS} | pairs(
     "golden gold|gray grey|navy dark blue|mint light green|cream beige|ivory white|crimson dark red|scarlet red|"
     "burgundy dark red|maroon dark red|teal turquoise|cyan turquoise|aqua turquoise|violet purple|lilac light purple|"
-    "charcoal dark grey|anthracite dark grey|olive dark green|tan light brown|khaki beige|bronze brown|rose pink"
+    "charcoal dark grey|anthracite dark grey|olive dark green|tan light brown|khaki beige|rose pink"
 )
 COLOR_WORDS |= {f"{said} {COLOR_WORDS[said].split()[-1]}": COLOR_WORDS[said] for said in ("navy", "mint", "olive")}
+COLOR_WORDS["cherry red"] = "dark red"
 """Every word for a colour -> its name."""
 
 
@@ -167,10 +178,10 @@ def surface_of(material: str, color: str | RGB | None) -> Material:
     bare = color is None or color in _BARE_COLORS
     return Material(
         name=material if color is None else f"{color if isinstance(color, str) else 'painted'} {material}",
-        color=(red, green, blue, substance.opacity),
-        roughness=substance.roughness if bare or substance.opacity < 1.0 else _PAINT_ROUGHNESS,
-        metallic=1.0 if color in _BARE_COLORS else substance.metallic if color is None else 0.0,
-        texture=wood_grain() if substance.grain and color is None else None,
+        color=(red, green, blue, 0.3 if substance.surface == "clear" else 1.0),
+        roughness=substance.roughness if bare or substance.surface == "clear" else _PAINT_ROUGHNESS,
+        metallic=float(bare and (color in _BARE_COLORS or substance.surface == "metal")),
+        texture=wood_grain() if substance.surface == "grain" and color is None else None,
     )
 
 
