@@ -16,7 +16,7 @@ from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
-    words="water closet, loo, lavatory, toilet bowl, commode toilet, wc, toilet seat, kids toilet",
+    words="water closet, loo, lavatory, toilet bowl, commode toilet, wc, kids toilet",
     material="ceramic",
     width=length(0.3, 0.6, default=0.4, usual=(0.35, 0.45), help="Outer width."),
     depth=length(0.55, 0.9, default=0.68, usual=(0.6, 0.75), help="Outer depth."),

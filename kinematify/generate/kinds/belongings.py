@@ -211,8 +211,8 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
 
 @kind(
     words=(
-        "glasses, pair of glasses, pair of eyeglasses, spectacles, pair of spectacles, sunglasses, pair of "
-        "sunglasses, reading glasses, safety glasses, 3d glasses, ski glasses"
+        "glasses, pair of glasses, pair of eyeglasses, spectacles, pair of spectacles, sunglasses, pair of sunglasses, "
+        "reading glasses, safety glasses, 3d glasses"
     ),
     title="pair of eyeglasses",
     material="plastic",

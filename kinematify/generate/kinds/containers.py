@@ -32,48 +32,35 @@ from kinematify.generate.procedural.workshop import Workshop
 
 @kind(
     words=(
-        "chest box, treasure chest, treasure chest box, toolbox, tool box, jewelry box, jewellery box, crate, case, "
-        "container, casket, trunk, lunch box, pencil box, storage box, sewing kit box, money box, gift crate, apple "
-        "crate, storage bench, hope chest, blanket chest, toy box, toy chest, cool box, esky, picnic basket, "
-        "lunchbox, pencil case, gift box, ring box, glasses case, briefcase, instrument case, record case, camera "
-        "case, cash box, file box, linen chest, dowry chest, blanket box, storage bin, recycling bin, recycling "
-        "box, deck box, cushion box, coffer, log box, coal box, feed bin, storage chest, storage trunk, pirate "
-        "chest, steamer trunk, sewing basket, wicker basket, bait box, fishing box, ammo box, ammunition box, first "
-        "aid box, first aid kit, medicine box, shoe box, shoebox, hat box, packing box, moving box, shipping box, "
-        "shipping crate, transport box, flight case, equipment case, road case, tool case, drill case, vanity case, "
-        "beauty case, humidor, cooler box, picnic hamper, keepsake box, memory box, toy crate, tool crate, violin "
-        "case, guitar case, trumpet case, saxophone case, gun case, rifle case, keyboard case, poker case, chess "
-        "box, coffin, sarcophagus, snuff box, trinket box, spice box, card box, cigarette case, cufflink "
-        "box, earbud case, charging case, contact lens case, cooler, ice chest"
+        "chest box, treasure chest, toolbox, tool box, jewelry box, jewellery box, crate, case, container, casket, "
+        "trunk, lunch box, pencil box, storage box, sewing kit box, money box"
     ),
     usual={
         "storage bench, hope chest, blanket chest, toy box, toy chest": {"width": 1.1, "depth": 0.45, "height": 0.5},
-        "cool box, esky, picnic basket, cooler, ice chest": {"width": 0.6, "depth": 0.4, "height": 0.4},
+        "cool box, esky, cooler, ice chest": {"width": 0.6, "depth": 0.4, "height": 0.4},
         "lunchbox, pencil case, gift box, ring box, glasses case": {"width": 0.25, "depth": 0.15, "height": 0.1},
-        "briefcase, instrument case, record case, camera case, cash box, file box": {
+        "briefcase, record case, camera case, cash box, file box": {
             "width": 0.45,
             "depth": 0.3,
             "height": 0.2,
         },
         (
-            "linen chest, dowry chest, blanket box, storage bin, recycling bin, recycling box, deck box, cushion "
-            "box, coffer, log box, coal box, feed bin, storage chest, storage trunk, pirate chest, steamer trunk"
+            "linen chest, dowry chest, blanket box, storage bin, recycling bin, recycling box, deck box, cushion box, "
+            "coffer, log box, coal box, storage chest, storage trunk, pirate chest, steamer trunk"
         ): {"width": 1, "depth": 0.5, "height": 0.5},
         (
-            "sewing basket, wicker basket, bait box, fishing box, ammo box, ammunition box, first aid box, first "
-            "aid kit, medicine box, shoe box, shoebox, hat box, packing box, moving box, shipping box, shipping "
-            "crate, transport box, flight case, equipment case, road case, tool case, drill case, vanity case, "
-            "beauty case, humidor, cooler box, picnic hamper, keepsake box, memory box, toy crate, tool crate"
+            "bait box, fishing box, ammo box, ammunition box, first aid box, first aid kit, medicine box, shoe box, "
+            "shoebox, packing box, moving box, shipping box, shipping crate, transport box, flight case, equipment "
+            "case, road case, tool case, drill case, vanity case, beauty case, humidor, cooler box, keepsake box, "
+            "memory box, toy crate, tool crate"
         ): {"width": 0.4, "depth": 0.3, "height": 0.25},
-        (
-            "violin case, guitar case, trumpet case, saxophone case, gun case, rifle case, keyboard case, poker "
-            "case, chess box"
-        ): {"width": 0.9, "depth": 0.35, "height": 0.15},
-        "coffin, sarcophagus": {"width": 2, "depth": 0.7, "height": 0.5},
-        (
-            "snuff box, trinket box, spice box, card box, cigarette case, cufflink box, earbud case, "
-            "charging case, contact lens case"
-        ): {"width": 0.12, "depth": 0.08, "height": 0.06},
+        "gun case, rifle case, poker case, chess box": {"width": 0.9, "depth": 0.35, "height": 0.15},
+        "coffin": {"width": 2, "depth": 0.7, "height": 0.5},
+        "snuff box, trinket box, spice box, card box, cigarette case, cufflink box, charging case": {
+            "width": 0.12,
+            "depth": 0.08,
+            "height": 0.06,
+        },
     },
     title="box with a lid",
     material="wood",
@@ -161,16 +148,11 @@ def box_(
 
 
 @kind(
-    usual={
-        "flip cap bottle, flip top bottle, tube with a flip cap, toothpaste tube, sauce bottle, flip top tube": {
-            "cap": "flip"
-        }
-    },
+    usual={"flip cap bottle, flip top bottle, sauce bottle": {"cap": "flip"}},
     words=(
         "water bottle, wine bottle, drinking bottle, flask, milk bottle, bottle of water, thermos, thermos flask, "
-        "vacuum flask, perfume bottle, sports bottle, shampoo bottle, ketchup bottle, medicine bottle, baby "
-        "bottle, oil bottle, beer bottle, vinegar bottle, vial, soda bottle, juice bottle, flip cap bottle, flip "
-        "top bottle, tube with a flip cap, toothpaste tube, sauce bottle, flip top tube"
+        "vacuum flask, sports bottle, shampoo bottle, ketchup bottle, medicine bottle, oil bottle, beer bottle, "
+        "vinegar bottle, vial, soda bottle, juice bottle"
     ),
     title="bottle with a cap",
     material="plastic",
@@ -266,8 +248,8 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
 
 @kind(
     words=(
-        "pail, water bucket, paint bucket, cleaning bucket, mop bucket, sand bucket, champagne bucket, feed "
-        "bucket, milk pail, beach bucket, toy bucket, slop bucket"
+        "pail, water bucket, paint bucket, cleaning bucket, sand bucket, feed bucket, milk pail, beach bucket, toy "
+        "bucket, slop bucket"
     ),
     material="plastic",
     width=length(
@@ -347,9 +329,8 @@ def bucket(
 
 @kind(
     words=(
-        "garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, trashcan, pedal bin, "
-        "wastebasket, kitchen bin, recycling can, waste basket, step bin, office bin, litter bin, bathroom "
-        "bin"
+        "garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, trashcan, pedal bin, kitchen bin, "
+        "recycling can, step bin, office bin, litter bin, bathroom bin"
     ),
     material="plastic",
     width=length(0.18, 0.8, default=0.28, usual=(0.2, 0.42), help="Outer width or diameter.", words="diameter"),

@@ -67,9 +67,9 @@ def standing_desk(b: ObjectBuilder, width: float, depth: float, height: float) -
 @kind(
     words=(
         "swivel stool, bar stool, screw stool, music stool, stool, barstool, swivel bar stool, counter stool, pub "
-        "stool, work stool, drafting stool, lab stool, vanity stool, saddle stool, kitchen stool, drum stool, drum "
-        "throne, rotating stool, bar chair, artist stool, massage stool, doctor stool, dentist stool, shop stool, "
-        "revolving stool, spinning stool, cobbler stool"
+        "stool, work stool, drafting stool, lab stool, vanity stool, kitchen stool, drum stool, drum throne, rotating "
+        "stool, artist stool, massage stool, doctor stool, dentist stool, shop stool, revolving stool, spinning stool, "
+        "cobbler stool"
     ),
     radius=(0.15, 0.22),
     height=(0.4, 0.6),

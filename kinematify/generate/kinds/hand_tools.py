@@ -11,7 +11,7 @@ from kinematify.generate.procedural.solids import X, Y, Z, beam, slab
 
 
 @kind(
-    words="jig saw, sabre saw, saber saw",
+    words="jig saw",
     part_words={"base_plate": "base, shoe, sole, plate, sole plate", "trigger": "switch"},
     size=(0.9, 1.2),
 )
@@ -149,7 +149,7 @@ def scroll_saw(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words="roller brush, lint roller, wallpaper roller, ink roller, brayer",
+    words="roller brush, wallpaper roller, brayer",
     part_words={"roller": "roll, sleeve"},
     details={"handle": 1},
     width=(0.1, 0.28),
@@ -206,7 +206,7 @@ def folding_ruler(b: ObjectBuilder, segments: int) -> None:
 
 
 @kind(
-    words="octant, quadrant",
+    words="octant",
     part_words={"arm": "index arm, index, alidade"},
     details={"telescope": 1, "arc": 1},
     size=(0.9, 1.2),

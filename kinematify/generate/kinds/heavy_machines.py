@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @kind(
     walls=180,
-    words="digger, backhoe, mini excavator, power shovel, toy excavator, toy digger, crawler excavator",
+    words="digger, mini excavator, toy excavator, toy digger, crawler excavator",
     material="steel",
     length=length(1.5, 5.0, default=2.6, usual=(1.6, 4.0), help="Of the tracks."),
     width=length(1.0, 4.0, default=1.8, usual=(1.2, 2.6), help="Over the tracks."),
@@ -134,10 +134,7 @@ def excavator(
 
 
 @kind(
-    words=(
-        "tower crane, mobile crane, construction crane, toy crane, harbor crane, dock crane, truck crane, toy tower "
-        "crane, building crane"
-    ),
+    words=("tower crane, mobile crane, construction crane, toy crane, truck crane, toy tower crane, building crane"),
     material="steel",
     kind=choice(
         {"tower": "", "mobile": "crawler, tracked, telescopic, telescoping"},

@@ -99,7 +99,7 @@ def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
             b.follow(f"louver_{k}", "louver_0", 1)
 
 
-@kind("cat litter box", walls=4, words="litter box, litter tray", width=(0.35, 0.55))
+@kind("cat litter box", walls=4, words="litter box", width=(0.35, 0.55))
 def litter_box(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part("box", slab(w, 0.25, (0, 0.4)), look="grey")
@@ -151,7 +151,7 @@ def coat_rack(b: ObjectBuilder, number: int) -> None:
 
 
 @kind(
-    words="shoe rack, tilting shoe cabinet, tilt out cabinet, laundry cabinet, tilt out bin",
+    words="tilting shoe cabinet, tilt out cabinet, laundry cabinet, tilt out bin",
     rows=whole(1, 4, words="flap, compartment"),
     width=(0.5, 0.9),
     drawers=whole(0, 1, default=0, words="drawer"),
@@ -191,7 +191,7 @@ def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> Non
         b.hinge(f"flap_{k}", "cabinet", X, (0, -0.018, z - half + 0.004), 0.7)
 
 
-@kind(words="photo frame, easel frame, table mirror, makeup mirror with a stand", width=(0.1, 0.3), height=(0.13, 0.4))
+@kind(words="photo frame, easel frame", width=(0.1, 0.3), height=(0.13, 0.4))
 def picture_frame(b: ObjectBuilder, width: float, height: float) -> None:
     b.part("frame", slab(width / 2, (0, 0.012), (0, height)), look="wood")
     b.cut("frame", slab(0.42 * width, (-1, 0.005), (0.08 * height, 0.92 * height)))
@@ -245,7 +245,7 @@ def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
 
 @kind(
     "adjustable headrest chair",
-    words="airline seat row, train seat, bus seat, gaming seat, car seat with a headrest, car seat, airplane seat",
+    words="train seat, bus seat, gaming seat, car seat with a headrest, car seat, airplane seat",
     size=(0.9, 1.1),
 )
 def passenger_seat(b: ObjectBuilder, size: float) -> None:
@@ -316,7 +316,7 @@ def atm(b: ObjectBuilder, width: float) -> None:
     b.hinge("flap", "case", -X, (0, -0.309, 0.858), 1.2)
 
 
-@kind(words="cargo container, container with doors, freight container, storage container, sea container")
+@kind(words="cargo container, container with doors, freight container, sea container")
 def shipping_container(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
     p = b.sized(size)
@@ -366,7 +366,7 @@ def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
     b.hinge("disc", "body", Z, (0, 0, 0), 1.5, lower=-1.5)
 
 
-@kind(walls=100, words="hydrant, standpipe, garden hydrant", size=(0.9, 1.1))
+@kind(walls=100, words="hydrant", size=(0.9, 1.1))
 def fire_hydrant(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -392,10 +392,7 @@ def fire_hydrant(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words=(
-        "clothesline, rotary clothes line, clothes line, rotary washing line, washing line, rotary airer, "
-        "rotary dryer, hills hoist"
-    ),
+    words=("rotary clothes line, rotary washing line, rotary airer, rotary dryer, hills hoist"),
     height=(1.5, 2.0),
 )
 def rotary_clothesline(b: ObjectBuilder, height: float) -> None:

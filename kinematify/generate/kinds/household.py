@@ -11,11 +11,8 @@ from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, bo
 
 @kind(
     words=(
-        "pot, cooking pot, saucepan, stockpot, stew pot, casserole, dutch oven, sauce pan, stock pot, soup "
-        "pot, pasta pot, cauldron, fondue pot, bean pot, sauce pot, honey jar, ginger jar, tea caddy, tea "
-        "tin, biscuit tin, cookie tin, biscuit barrel, coffee can, coffee canister, diaper pail, ash bucket, "
-        "powder jar, sugar pot, soup tureen, flour bin, biscuit jar, pickle jar, soup kettle, trash pail, "
-        "steamer pot, rice pot"
+        "pot, cooking pot, stockpot, stew pot, casserole, dutch oven, stock pot, soup pot, pasta pot, bean pot, soup "
+        "tureen, soup kettle, rice pot"
     ),
     radius=(0.08, 0.18),
     height=(0.06, 0.2),
@@ -88,7 +85,7 @@ def kettle(b: ObjectBuilder, radius: float, height: float) -> None:
 
 
 @kind(
-    words="jar, preserving jar, storage jar, cookie jar, mason jar, jam jar, candy jar",
+    words="jar, preserving jar, storage jar, cookie jar, candy jar",
     radius=(0.03, 0.07),
     height=(0.08, 0.2),
 )
@@ -154,7 +151,7 @@ def shower_mixer(b: ObjectBuilder, width: float, radius: float) -> None:
 
 
 @kind(
-    words="swing arm towel rail, towel rack, swivel towel bar, towel holder",
+    words="swing arm towel rail, swivel towel bar",
     height=(0.2, 0.6),
     number=whole(2, 4, words="arm, bar, rail"),
 )
@@ -268,7 +265,7 @@ def food_processor(b: ObjectBuilder, radius: float) -> None:
 
 
 @kind(
-    words="tea urn, coffee urn, samovar, drink dispenser, beverage dispenser, water dispenser",
+    words="tea urn, coffee urn, samovar, drink dispenser, beverage dispenser",
     radius=(0.12, 0.18),
     height=(0.3, 0.5),
 )

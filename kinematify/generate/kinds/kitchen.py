@@ -32,7 +32,7 @@ def moka_pot(b: ObjectBuilder, radius: float, height: float) -> None:
     b.hinge("lid", "pot", -X, (0, radius, height + 0.001), 1.7)
 
 
-@kind(words="multi cooker, slow cooker, crock pot", radius=(0.11, 0.15), height=(0.18, 0.26))
+@kind(words="multi cooker", radius=(0.11, 0.15), height=(0.18, 0.26))
 def rice_cooker(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part("body", b.cylinder(radius, 0.01, height), look="white")
     b.cut("body", b.cylinder(0.86 * radius, 0.04, height + 0.01))
@@ -157,7 +157,7 @@ def apple_peeler(b: ObjectBuilder, size: float) -> None:
     b.hinge("arm", "base", Z, p(-0.1, 0.02, 0.02), 0.8, lower=0)
 
 
-@kind(words="tea pot, coffee jug, pitcher with lid, coffee pot", radius=(0.06, 0.1))
+@kind(words="tea pot, coffee pot", radius=(0.06, 0.1))
 def teapot(b: ObjectBuilder, radius: float) -> None:
     r = radius
     p = b.sized(r)
@@ -175,7 +175,7 @@ def teapot(b: ObjectBuilder, radius: float) -> None:
     b.slide("lid", "pot", Z, r)
 
 
-@kind(words="cheese dome, cake dome, cloche", width=(0.16, 0.3), depth=(0.1, 0.2))
+@kind(words="", width=(0.16, 0.3), depth=(0.1, 0.2))
 def butter_dish(b: ObjectBuilder, width: float, depth: float) -> None:
     b.part("dish", slab(width / 2, depth / 2, (0, 0.012)), look="white ceramic")
     b.part("cover", slab(0.44 * width, 0.42 * depth, (0.013, 0.08)), slab(0.02, 0.01, (0.075, 0.1)), look="glass")
@@ -386,7 +386,7 @@ def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) ->
 
 
 @kind(
-    words="hob, gas hob, hot plate, burner, stove top, camping stove, gas burner, portable stove, electric hob",
+    words="hob, gas hob, hot plate, stove top, electric hob",
     number=whole(1, 6, words="knob, burner, dial"),
 )
 def cooktop(b: ObjectBuilder, number: int) -> None:
@@ -438,7 +438,7 @@ def paper_towel_holder(b: ObjectBuilder, height: float) -> None:
     b.spin("roll", "stand", Z, (0, 0, 0))
 
 
-@kind(words="burger press, hamburger press, dumpling press", radius=(0.08, 0.13))
+@kind(words="burger press, hamburger press", radius=(0.08, 0.13))
 def tortilla_press(b: ObjectBuilder, radius: float) -> None:
     b.part(
         "base",
@@ -466,7 +466,7 @@ def tortilla_press(b: ObjectBuilder, radius: float) -> None:
     b.hinge("lever", "base", -X, (0, -radius - 0.025, 0.02), 0.5, lower=-0.6)
 
 
-@kind(words="roasting spit, kebab grill, doner grill, barbecue spit", width=(0.6, 1.2))
+@kind(words="roasting spit, kebab grill, barbecue spit", width=(0.6, 1.2))
 def rotisserie(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(

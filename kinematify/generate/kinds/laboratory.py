@@ -11,7 +11,7 @@ from kinematify.generate.library.panels import carcass, drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, slab, vector
 
 
-@kind(words="micropipette, dropper, pipettor", size=(0.9, 1.1))
+@kind(words="micropipette, pipettor", size=(0.9, 1.1))
 def pipette(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -98,7 +98,7 @@ def incubator(b: ObjectBuilder, width: float, height: float, number: int) -> Non
         b.slide(f"rack_{k}", "cabinet", -Y, 0.015)
 
 
-@kind(words="vacuum chamber, steam sterilizer, pressure vessel", radius=(0.2, 0.35), length=(0.5, 0.9))
+@kind(words="vacuum chamber, steam sterilizer", radius=(0.2, 0.35), length=(0.5, 0.9))
 def autoclave(b: ObjectBuilder, radius: float, length: float) -> None:
     z = radius + 0.25
     b.part(
@@ -203,7 +203,7 @@ def analytical_balance(b: ObjectBuilder, size: float) -> None:
         b.hinge(f"door_{k}", "base", s * Z, p(s * 0.108, 0.128, 0), 1.3)
 
 
-@kind(words="lab stand, clamp stand, ring stand, burette stand, burette", height=(0.5, 0.8))
+@kind(words="lab stand, clamp stand, ring stand, burette stand", height=(0.5, 0.8))
 def retort_stand(b: ObjectBuilder, height: float) -> None:
     b.part(
         "base", slab(0.1, (-0.08, 0.1), (0, 0.015)), b.cylinder(0.006, (0, 0.07, 0.01), (0, 0.07, height)), look="steel"
@@ -218,7 +218,7 @@ def retort_stand(b: ObjectBuilder, height: float) -> None:
     b.slide("clamp", "base", Z, 0.3 * height, lower=-0.4 * height)
 
 
-@kind(words="glovebox, sandblasting cabinet, sand blaster, isolator", width=(0.6, 1.1))
+@kind(words="glovebox, sandblasting cabinet, isolator", width=(0.6, 1.1))
 def glove_box(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
@@ -268,7 +268,7 @@ def test_tube_rack(b: ObjectBuilder, number: int) -> None:
         b.slide(f"tube_{k}", "rack", Z, 0.12)
 
 
-@kind(words="thermocycler, spectrometer, photometer, blood analyzer, lab analyzer", width=(0.22, 0.35))
+@kind(words="thermocycler", width=(0.22, 0.35))
 def pcr_machine(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     case(b, "body", (-w, -0.16, 0), (w, 0.16, 0.16), material="plastic")
@@ -291,7 +291,7 @@ def pcr_machine(b: ObjectBuilder, width: float) -> None:
 
 
 @kind(
-    words="optical rail, linear rail, lens rail, slide rail, motorized slider",
+    words="optical rail, linear rail, lens rail, slide rail",
     number=whole(1, 4, words="carriage, rider"),
     length=(0.6, 1.4),
 )
@@ -337,7 +337,7 @@ def bunsen_burner(b: ObjectBuilder, size: float) -> None:
     knob(b, "valve", "base", p(0.045, -0.005, 0.03), 0.007 * size, -Y, high=0.014 * size)
 
 
-@kind(words="infusion pump, dosing pump", size=(0.9, 1.1))
+@kind(words="", size=(0.9, 1.1))
 def syringe_pump(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -354,10 +354,7 @@ def syringe_pump(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words=(
-        "surgery table, massage table, treatment table, exam bed, dissection table, tattoo bed, physiotherapy bed, "
-        "examination table, exam table"
-    ),
+    words=("surgery table, treatment table, exam bed, tattoo bed, physiotherapy bed, examination table, exam table"),
     height=(0.7, 0.85),
 )
 def operating_table(b: ObjectBuilder, height: float) -> None:
@@ -425,7 +422,7 @@ def overbed_table(b: ObjectBuilder, width: float, height: float) -> None:
         caster(b, f"caster_{k}", "base", (x, y, 0.06), 0.06)
 
 
-@kind(words="walking stick, walking cane, cane, trekking pole, ski pole, hiking pole", height=(0.8, 1.1))
+@kind(words="walking stick, walking cane, cane, trekking pole, hiking pole", height=(0.8, 1.1))
 def crutch(b: ObjectBuilder, height: float) -> None:
     b.part(
         "shaft",

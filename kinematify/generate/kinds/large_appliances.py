@@ -23,8 +23,7 @@ from kinematify.generate.procedural.workshop import Workshop
 @kind(
     words=(
         "stove, cooker, range, kitchen stove, range cooker, gas stove, gas oven, electric stove, cooking range, gas "
-        "cooker, kitchen range, gas range, pizza oven, baking oven, electric oven, bread oven, stone oven, electric "
-        "cooker, gas stove oven, induction stove"
+        "cooker, kitchen range, gas range, electric oven, electric cooker, gas stove oven, induction stove"
     ),
     title="oven or stove",
     material="metal",
@@ -489,10 +488,7 @@ def washing_machine(
 
 
 @kind(
-    words=(
-        "strongbox, strong box, safe box, money safe, bank safe, office safe, home safe, hotel room safe, gun safe, "
-        "wall safe, hotel safe"
-    ),
+    words=("strongbox, strong box, safe box, money safe, bank safe, office safe, home safe, hotel room safe"),
     usual={"gun safe, wall safe, hotel safe": {"width": 0.4, "depth": 0.4, "height": 0.5}},
     material="steel",
     width=length(0.2, 1.2, default=0.35, usual=(0.28, 0.6), help="Outer width."),

@@ -81,7 +81,7 @@ def pull_along_animal(b: ObjectBuilder, size: float) -> None:
             )
 
 
-@kind("jointed doll", words="doll, puppet, toy doll, marionette, mannequin", size=(0.1, 1.0))
+@kind("jointed doll", words="doll, toy doll, mannequin", size=(0.1, 1.0))
 def articulated_doll(b: ObjectBuilder, size: float) -> None:
     """Arms, legs and a head on a torso."""
     g = b.gap(0.05 * size)
@@ -303,7 +303,7 @@ def desktop_computer(b: ObjectBuilder, width: float, depth: float, height: float
     button(b, "power", "tower", (0, 0, 0.5 * height), (0.02, 0.02), 0.004, -Y, is_round=b.maybe())
 
 
-@kind("camera on a tripod", words="video camera, camcorder, film camera on a tripod", height=(0.6, 1.5))
+@kind("camera on a tripod", words="film camera on a tripod", height=(0.6, 1.5))
 def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
     """A head that pans and tilts, a lens ring, legs that spread."""
     b.part(
@@ -368,7 +368,7 @@ def dentist_chair(b: ObjectBuilder, z: float) -> None:
 
 
 @kind(
-    words="sectional garage door, up and over door, overhead door, tilting garage door",
+    words="up and over door, overhead door, tilting garage door",
     width=(2.2, 3.0),
     height=(1.9, 2.3),
     lift=yes(0.45, words="vertical lift", help="It goes straight up before the wall above it."),
@@ -591,7 +591,7 @@ def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
 
 
 @kind(
-    words="upright piano, pianola, player piano, clavichord, toy piano",
+    words="upright piano, pianola, player piano, toy piano",
     title="upright piano",
     part_words={"lid": "fallboard, keyboard lid, key cover, cover", "key": "white key, piano key"},
     details={"leg": 2},

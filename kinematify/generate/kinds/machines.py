@@ -17,11 +17,9 @@ from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, bo
 
 @kind(
     words=(
-        "tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart, cart, medical "
-        "cart, hospital cart, crash cart, workshop cart, tool trolley cart, instrument trolley, surgical trolley, "
-        "surgical cart, medicine trolley, medication cart, airline trolley, roll cart, craft cart, art cart, tool "
-        "wagon, office drawer unit, mobile pedestal, roll container, rolling drawer unit, rolling pedestal, "
-        "rolling tool chest, rolling cabinet, instrument cart, drawer cart, drawer trolley"
+        "tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart, crash cart, workshop "
+        "cart, tool trolley cart, medication cart, office drawer unit, mobile pedestal, rolling drawer unit, rolling "
+        "pedestal, rolling tool chest, rolling cabinet, drawer cart, drawer trolley"
     ),
     width=(0.55, 0.8),
     depth=(0.4, 0.5),
@@ -99,7 +97,7 @@ def press(b: ObjectBuilder, height: float) -> None:
 
 
 @kind(
-    words="valve, globe valve, stop valve, handwheel valve, needle valve, water valve, radiator valve",
+    words="valve, globe valve, stop valve, handwheel valve, needle valve, water valve",
     radius=(0.02, 0.15),
     number=whole(3, 6, words="spoke"),
 )
@@ -376,7 +374,7 @@ def telescope_mast(b: ObjectBuilder, number: int, radius: float, height: float, 
 
 
 @kind(
-    words="roller conveyor, conveyor belt, belt conveyor",
+    words="roller conveyor",
     number=whole(2, 40, default=7, usual=(5, 10), words="roller"),
     width=(0.3, 0.8),
     size=(0.05, 0.09),

@@ -101,7 +101,7 @@ def rotary_phone(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words="cassette recorder, cassette player, tape recorder, cd player, radio, transistor radio, portable radio",
+    words="cassette recorder, cassette player, tape recorder",
     width=(0.4, 0.6),
 )
 def boombox(b: ObjectBuilder, width: float) -> None:
@@ -268,7 +268,7 @@ def projector_screen(b: ObjectBuilder, width: float) -> None:
     b.slide("screen", "case", -Z, 0.06)
 
 
-@kind(words="mic stand, boom stand, microphone", height=(0.9, 1.2))
+@kind(words="mic stand, boom stand", height=(0.9, 1.2))
 def microphone_stand(b: ObjectBuilder, height: float) -> None:
     b.part(
         "base",
@@ -508,7 +508,7 @@ def drafting_table(b: ObjectBuilder, width: float, depth: float) -> None:
     b.hinge("board", "frame", X, (0, 0, 0.715), 1.0, lower=0)
 
 
-@kind(words="pulpit, speaker desk, music stand, note stand, podium, book stand", height=(0.95, 1.2))
+@kind(words="pulpit, speaker desk, podium", height=(0.95, 1.2))
 def lectern(b: ObjectBuilder, height: float) -> None:
     b.part("base", b.cylinder(0.22, 0, 0.03), b.tube(0.035, 0.028, 0.02, 0.75 * height), look="black steel")
     b.part(

@@ -10,10 +10,7 @@ from kinematify.generate.procedural.solids import X, Y, Z, box, slab, tray
 
 
 @kind(
-    words=(
-        "garden swing seat, hollywood swing, canopy swing, swing bench, glider chair, hanging chair, porch glider, "
-        "porch swing"
-    ),
+    words=("garden swing seat, hollywood swing, canopy swing, swing bench"),
     part_words={"seat": "bench, swing"},
     details={"roof": 1, "frame": 1},
     width=(1.2, 2.0),

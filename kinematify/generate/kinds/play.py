@@ -54,7 +54,7 @@ def crossbow(b: ObjectBuilder, size: float) -> None:
     b.slide("slide", "stock", Y, 0.15, lower=-0.2)
 
 
-@kind(words="fishing reel, fishing pole", length=(0.8, 1.4))
+@kind(words="fishing pole", length=(0.8, 1.4))
 def fishing_rod(b: ObjectBuilder, length: float) -> None:
     b.part(
         "rod",
@@ -106,7 +106,7 @@ def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
         b.hinge(f"handle_{k}", "frame", X, p(0, -0.44, 0.85), 0.25, lower=-0.25)
 
 
-@kind(words="bench press, training bench, sit up bench", size=(0.9, 1.1))
+@kind(words="bench press, training bench", size=(0.9, 1.1))
 def weight_bench(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -132,7 +132,7 @@ def weight_bench(b: ObjectBuilder, size: float) -> None:
     b.slide("bar", "frame", Z, 0.3)
 
 
-@kind("dart board cabinet", words="dartboard", width=(0.45, 0.6))
+@kind("dart board cabinet", words="", width=(0.45, 0.6))
 def dartboard_cabinet(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
@@ -335,7 +335,7 @@ def trombone(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words="acoustic guitar, ukulele, electric guitar, bass guitar",
+    words="acoustic guitar, ukulele, bass guitar",
     size=(0.5, 1.0),
     number=whole(4, 6, words="peg, string, tuner"),
 )
@@ -362,7 +362,7 @@ def guitar(b: ObjectBuilder, size: float, number: int) -> None:
         knob(b, f"peg_{k}", "body", p(s * 0.045, y, 0.03), 0.01 * size, s * X, high=0.03 * size, material="metal")
 
 
-@kind(words="drum, kick drum", radius=(0.22, 0.32))
+@kind(words="kick drum", radius=(0.22, 0.32))
 def bass_drum(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(

@@ -131,8 +131,7 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
 
 @kind(
     words=(
-        "three axis gantry, gantry robot, cartesian robot, cnc machine, milling machine, cnc router, laser cutter, "
-        "laser engraver, pick and place machine, pen plotter, gantry crane, overhead crane"
+        "three axis gantry, gantry robot, cartesian robot, cnc machine, cnc router, pick and place machine, pen plotter"
     ),
     title="three-axis gantry",
     material="metal",

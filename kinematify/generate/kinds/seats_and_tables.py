@@ -47,27 +47,9 @@ def drawer_stacks(text: str) -> list[int]:
 
 @kind(
     words=(
-        "cupboard, wardrobe, closet, chest, chest of drawers, dresser, sideboard, nightstand, bedside table, drawer "
-        "unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, wall unit, tv stand, tv "
-        "unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, vitrine, armoire, drawer "
-        "cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, apothecary chest, apothecary "
-        "cabinet, card catalogue, card catalog, kitchen island, aquarium stand, fish tank stand, media console, "
-        "media cabinet, media unit, hi-fi stand, bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china "
-        "cabinet, hutch, gun cabinet, linen cabinet, key cabinet, wall cabinet, spice cabinet, vanity unit, "
-        "washstand, sink unit, changing table, baby changing table, night table, end table, night stand, printer "
-        "stand, garderobe, linen closet, tv bench, tv lowboard, lowboard, entertainment center, entertainment unit, "
-        "media bench, tallboy dresser, lingerie chest, map cabinet, buffet, storage cabinet, utility cabinet, base "
-        "cabinet, sink cabinet, under sink cabinet, vanity cabinet, bathroom vanity, chemical cabinet, lab cabinet, "
-        "record cabinet, toy cabinet, craft cabinet, larder, pantry cupboard, broom closet, broom cupboard, trophy "
-        "case, trophy cabinet, showcase, display case, gym locker, school locker, tool locker, parcel locker, pie "
-        "safe, desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, tea "
-        "cabinet, sewing cabinet, switch cabinet, electrical cabinet, lateral file, lateral filing cabinet, file "
-        "drawer cabinet, tool storage cabinet, charging cabinet, switchgear, plc cabinet, evidence locker, proofing "
-        "cabinet, wall cupboard, overhead cabinet, overhead locker, overhead cupboard, kitchen block, row of "
-        "kitchen units, kitchen counter, kitchenette, medicine cabinet, mirror cabinet, bathroom cabinet, first aid "
-        "cabinet, desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer, map chest, plan "
-        "chest, bookshelf, bedside cabinet, kitchen cabinet, kitchen cupboard, bathroom cupboard, display cabinet, "
-        "office cabinet"
+        "cupboard, chest, chest of drawers, shelf, pantry, kitchen unit, base unit, wall unit, tallboy, storage unit, "
+        "bureau, chiffonier, vitrine, drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, "
+        "desk organiser, kitchen cabinet, kitchen cupboard, display cabinet, office cabinet"
     ),
     title="cabinet or chest",
     material="wood",
@@ -163,12 +145,12 @@ def drawer_stacks(text: str) -> list[int]:
             "drawers": 3,
         },
         (
-            "buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink cabinet, vanity "
-            "cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy cabinet, craft cabinet"
+            "buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink cabinet, vanity cabinet, "
+            "bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy cabinet, craft cabinet"
         ): {"width": 0.9, "height": 0.9, "depth": 0.45, "doors": 2, "drawers": 0},
         (
-            "larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, "
-            "display case, gym locker, school locker, tool locker, parcel locker, pie safe"
+            "larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, display "
+            "case, gym locker, school locker, tool locker, parcel locker, pie safe"
         ): {"width": 0.8, "height": 1.8, "depth": 0.4, "doors": 2, "drawers": 0},
         "organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, tea cabinet, sewing cabinet": {
             "width": 0.35,
@@ -281,16 +263,9 @@ def cabinet(
 
 @kind(
     words=(
-        "desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, writing table, "
-        "school table, reading desk, entrance table, counter, work table, dining table, lab bench, cocktail table, "
-        "sofa table, tea table, hallway table, entry table, sewing table, potting bench, school desk, chess table, "
-        "occasional table, conference table, meeting table, kitchen table, breakfast table, poker table, lab table, "
-        "laboratory table, packing table, welding table, prep table, butcher block, train table, play table, "
-        "laboratory bench, carpenter bench, woodworking bench, workshop bench, tool bench, work bench, garden "
-        "table, gaming desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children "
-        "desk, kids table, reception table, nail table, makeup table, bathroom table, drawer table, table with a "
-        "drawer, table with drawers, hall table, dressing table, vanity table, console table with drawers, desk "
-        "with pedestal, pedestal desk, computer desk, office desk, desk with drawers"
+        "desk, writing desk, workbench, console table, vanity, side table, study desk, writing table, school table, "
+        "reading desk, entrance table, drawer table, hall table, dressing table, vanity table, console table with "
+        "drawers, desk with drawers"
     ),
     usual={
         "desk with pedestal, pedestal desk, computer desk, office desk": {
@@ -298,18 +273,17 @@ def cabinet(
             "drawers": 3,
             "width": 1.45,
         },
-        "counter, work table, dining table, lab bench": {"width": 1.2, "depth": 0.6, "height": 0.75},
-        "cocktail table, sofa table, tea table": {"width": 1.1, "depth": 0.6, "height": 0.5},
+        "work table, lab bench": {"width": 1.2, "depth": 0.6, "height": 0.75},
+        "sofa table, tea table": {"width": 1.1, "depth": 0.6, "height": 0.5},
         "hallway table, entry table, sewing table, potting bench": {"width": 1, "depth": 0.4, "height": 0.8},
         "school desk, chess table, occasional table": {"width": 0.7, "depth": 0.5, "height": 0.7},
         (
-            "conference table, meeting table, kitchen table, breakfast table, poker table, lab table, laboratory "
-            "table, packing table, welding table, prep table, butcher block, train table, play table, laboratory "
-            "bench, carpenter bench, woodworking bench, workshop bench, tool bench, work bench, garden table"
+            "kitchen table, breakfast table, lab table, laboratory table, packing table, prep table, laboratory bench, "
+            "carpenter bench, woodworking bench, workshop bench, tool bench, work bench"
         ): {"width": 1.6, "depth": 0.8, "height": 0.75},
         (
-            "gaming desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children "
-            "desk, kids table, reception table, nail table, makeup table, bathroom table"
+            "gaming desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children desk, "
+            "kids table, reception table, nail table, makeup table, bathroom table"
         ): {"width": 1.2, "depth": 0.6, "height": 0.75},
     },
     title="table or desk with drawers",
@@ -406,9 +380,8 @@ def table(
 
 @kind(
     words=(
-        "foldable chair, camping chair, collapsible chair, garden chair, deck chair, beach chair, lawn chair, "
-        "patio chair, director chair, fishing chair, garden deck chair, picnic chair, folding stool, folding "
-        "seat"
+        "foldable chair, camping chair, collapsible chair, garden chair, lawn chair, patio chair, fishing chair, "
+        "picnic chair, folding seat"
     ),
     material="wood",
     width=length(0.3, 0.7, default=0.44, usual=(0.38, 0.5), help="Outer width."),

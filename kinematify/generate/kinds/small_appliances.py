@@ -287,10 +287,7 @@ def coffee_machine(
 
 @kind(
     usual={"ceiling fan, overhead fan": {"kind": "ceiling"}},
-    words=(
-        "ventilator, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, usb fan, electric fan, "
-        "ceiling fan, overhead fan"
-    ),
+    words=("ventilator, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, usb fan, electric fan"),
     material="plastic",
     kind=choice(
         {"stand": "desk, table, floor, pedestal, standing", "ceiling": "", "box": "window"},
@@ -432,9 +429,9 @@ def fan(
 
 @kind(
     words=(
-        "lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light, study lamp, bedside "
-        "lamp, drawing lamp, drafting lamp, led lamp, magnifying lamp, piano lamp, anglepoise lamp, workshop lamp, "
-        "table light, reading light, bedside light"
+        "lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light, study lamp, bedside lamp, "
+        "drawing lamp, drafting lamp, led lamp, piano lamp, anglepoise lamp, workshop lamp, table light, reading "
+        "light, bedside light"
     ),
     material="metal",
     part_words={"arm": "arm segment, segment"},

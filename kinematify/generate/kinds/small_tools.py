@@ -13,9 +13,8 @@ from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, pris
 
 @kind(
     words=(
-        "pair of scissors, kitchen scissors, paper scissors, nail scissors, kitchen shears, fabric shears, "
-        "poultry shears, bandage scissors, surgical scissors, sewing scissors, hair scissors, craft scissors, kids "
-        "scissors, herb scissors, office scissors, fabric scissors"
+        "pair of scissors, kitchen scissors, paper scissors, nail scissors, surgical scissors, sewing scissors, hair "
+        "scissors, craft scissors, kids scissors, herb scissors, office scissors, fabric scissors"
     ),
     title="pair of scissors",
     material="steel",
@@ -72,9 +71,8 @@ def scissors(b: ObjectBuilder, length: float, blade: float, thick: float, loops:
 
 @kind(
     words=(
-        "pair of pliers, combination pliers, pincers, pair of pincers, wire cutters, wire cutter, side cutter, "
-        "nippers, wire stripper, crimping pliers, cutting pliers, cable cutter, lineman pliers, long nose pliers, "
-        "electrician pliers, needle nose pliers"
+        "pair of pliers, combination pliers, wire cutters, wire cutter, side cutter, nippers, cutting pliers, lineman "
+        "pliers, long nose pliers, electrician pliers, needle nose pliers"
     ),
     title="pair of pliers",
     material="steel",

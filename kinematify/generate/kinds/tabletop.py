@@ -16,7 +16,7 @@ from kinematify.generate.procedural.solids import X, Y, Z, slab, vector
 @kind(
     "bag",
     walls=4,
-    words="handbag, shopping bag, tote bag, gym bag, doctor bag, purse",
+    words="handbag, shopping bag, tote bag, purse",
     width=(0.2, 0.45),
     depth=(0.08, 0.2),
     height=(0.15, 0.35),

@@ -39,7 +39,7 @@ def train_wagon(b: ObjectBuilder) -> None:
             )
 
 
-@kind(walls=30, words="gondola lift, ski lift, cable car cabin, funicular cabin")
+@kind(walls=30, words="gondola lift, cable car cabin")
 def cable_car(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.1)
     p = b.sized(size)
@@ -129,7 +129,7 @@ def snowmobile(b: ObjectBuilder) -> None:
     b.hinge("handlebar", "body", Z, p(0.3, 0, 0), 0.6, lower=-0.6)
 
 
-@kind(walls=20, words="gokart, go-kart, pedal car, soap box, soapbox car")
+@kind(walls=20, words="gokart, go-kart, soap box, soapbox car")
 def go_kart(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.2)
     p = b.sized(size)
@@ -346,7 +346,7 @@ def stroller(b: ObjectBuilder, size: float) -> None:
         wheel(b, f"wheel_{k}", "frame", p(s * 0.265, y, 0.14), 0.14 * size, 0.04 * size, s * X, axle=0.008 * size)
 
 
-@kind(walls=12, words="camper trailer, mobile home")
+@kind(walls=12, words="camper trailer")
 def caravan(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.15)
     p = b.sized(size)

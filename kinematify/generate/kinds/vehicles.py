@@ -101,7 +101,7 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
 
 @kind(
     walls=47,
-    words="pickup, lorry, truck, flatbed truck, toy truck",
+    words="pickup, truck, toy truck",
     length=(4.0, 5.5),
     width=(1.7, 2.0),
     radius=(0.32, 0.42),
@@ -151,9 +151,8 @@ def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -
 @kind(
     walls=35,
     words=(
-        "delivery van, minivan, camper van, ambulance, transporter van, minibus, campervan, cargo van, "
-        "transporter, camper, motorhome, mail van, post van, police van, food truck, panel van, rv, bakery "
-        "van, news van"
+        "delivery van, minivan, camper van, ambulance, transporter van, campervan, cargo van, transporter, camper, "
+        "mail van, post van, police van, panel van, bakery van, news van"
     ),
     length=(4.5, 6.0),
     width=(1.8, 2.1),
@@ -198,8 +197,8 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
     "bus",
     walls=65,
     words=(
-        "tram, city bus, coach, streetcar, trolley bus, school bus, subway car, train car, railway carriage, "
-        "tour bus, trolleybus, shuttle bus, airport shuttle, tram car, monorail"
+        "tram, city bus, coach, streetcar, trolley bus, school bus, tour bus, trolleybus, shuttle bus, airport "
+        "shuttle, tram car"
     ),
     length=(6.0, 12.0),
     swings=yes(0.5),
@@ -376,7 +375,7 @@ def motor_boat(b: ObjectBuilder, length: float) -> None:
 
 
 @kind(
-    words="car trailer, utility trailer, box trailer, boat trailer",
+    words="car trailer, utility trailer, box trailer",
     length=(1.5, 3.0),
     width=(1.0, 1.5),
     radius=(0.22, 0.32),
@@ -525,7 +524,7 @@ def greenhouse(b: ObjectBuilder, width: float, length: float) -> None:
 
 
 @kind(
-    words="grill, bbq, charcoal grill, kettle grill, gas grill, smoker, bbq grill, barbecue grill",
+    words="grill, bbq, charcoal grill, kettle grill, bbq grill, barbecue grill",
     radius=(0.2, 0.32),
     z=(0.6, 0.75),
 )

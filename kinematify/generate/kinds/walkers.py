@@ -15,10 +15,7 @@ from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
-    words=(
-        "robot dog, dog robot, dog, four legged robot, quadruped robot, robot cat, robotic dog, robot horse, "
-        "mechanical dog, toy dog"
-    ),
+    words=("robot dog, dog robot, four legged robot, quadruped robot, robot cat, robotic dog, mechanical dog"),
     title="robot on four legs",
     material="metal",
     joints=whole(2, 3, default=3, help="Of every leg.", words="joint, joint per leg, dof"),
@@ -89,8 +86,8 @@ def quadruped(
 
 @kind(
     words=(
-        "six legged robot, spider robot, robot spider, spider, hexapod robot, insect robot, robot ant, robot "
-        "insect, robotic spider, ant robot, beetle robot, toy spider"
+        "six legged robot, spider robot, robot spider, hexapod robot, insect robot, robot ant, robot insect, robotic "
+        "spider, ant robot, beetle robot"
     ),
     title="robot on six legs",
     material="plastic",
@@ -153,8 +150,8 @@ def hexapod(
 
 @kind(
     words=(
-        "humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, wind up robot, "
-        "robot figure, action figure, robot man, toy humanoid"
+        "humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, robot figure, robot "
+        "man, toy humanoid"
     ),
     title="robot with arms and legs",
     material="plastic",

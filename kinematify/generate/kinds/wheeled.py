@@ -11,8 +11,7 @@ from kinematify.generate.procedural.solids import X, Y, Z, box, slab
 
 @kind(
     words=(
-        "platform truck, flatbed cart, platform trolley, transport cart, luggage cart, luggage trolley, trolley, "
-        "flatbed trolley, warehouse trolley"
+        "platform truck, flatbed cart, platform trolley, transport cart, trolley, flatbed trolley, warehouse trolley"
     ),
     width=(0.35, 0.7),
     depth=(0.5, 1.1),
@@ -41,7 +40,7 @@ def platform_cart(b: ObjectBuilder, width: float, depth: float, radius: float) -
 
 
 @kind(
-    words="wheeled box, wheelie bin, wheely bin, mobile garbage bin, rolling storage box, laundry cart",
+    words="wheeled box, rolling storage box, laundry cart",
     width=(0.05, 0.8),
     depth=(0.1, 1.4),
     height=(0.05, 0.6),
@@ -69,7 +68,7 @@ def box_on_wheels(b: ObjectBuilder, width: float, depth: float, height: float, n
 
 
 @kind(
-    words="camping table, picnic table, trestle table, card table",
+    words="camping table, card table",
     width=(0.5, 1.8),
     depth=(0.4, 0.9),
     height=(0.4, 0.8),

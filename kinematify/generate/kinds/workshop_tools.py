@@ -352,7 +352,7 @@ def bellows(b: ObjectBuilder, size: float) -> None:
     b.hinge("board", "lower_board", X, p(0, 0.13, 0.03), 0.45)
 
 
-@kind(words="voltmeter, measuring device, geiger counter", size=(0.9, 1.2))
+@kind(words="voltmeter", size=(0.9, 1.2))
 def multimeter(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part("case", p.slab(0.045, (0, 0.035), (0, 0.18)), p.slab(0.035, (-0.002, 0.001), (0.12, 0.165)), look="yellow")
@@ -362,7 +362,7 @@ def multimeter(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words="signal generator, power supply, laboratory power supply, measuring instrument",
+    words="",
     width=(0.25, 0.4),
     number=whole(3, 6, words="knob, dial"),
 )
@@ -483,7 +483,7 @@ def feeler_gauge(b: ObjectBuilder, number: int, length: float) -> None:
         b.hinge(f"leaf_{k}", "case", Z, (0, 0, 0), 2.8)
 
 
-@kind(words="wood plane, block plane, planer", length=(0.16, 0.35))
+@kind(words="wood plane, block plane", length=(0.16, 0.35))
 def hand_plane(b: ObjectBuilder, length: float) -> None:
     b.part(
         "body",
@@ -585,7 +585,7 @@ def garden_cart(b: ObjectBuilder, length: float, width: float) -> None:
     b.hinge("handle", "frame", Y, (length / 2 + 0.03, 0, 0.23), 0.7, lower=-0.2)
 
 
-@kind(words="rotating drum, bingo cage, lottery drum, raffle drum", radius=(0.15, 0.32), length=(0.4, 0.8))
+@kind(words="rotating drum, lottery drum, raffle drum", radius=(0.15, 0.32), length=(0.4, 0.8))
 def compost_tumbler(b: ObjectBuilder, radius: float, length: float) -> None:
     z = radius + 0.35
     l = length / 2
@@ -616,7 +616,7 @@ def compost_tumbler(b: ObjectBuilder, radius: float, length: float) -> None:
     b.hinge("hatch", "drum", -X, (0, 0.45 * radius, z + radius + 0.001), 1.8)
 
 
-@kind(words="rain butt, water barrel, wine barrel, barrel, cask", radius=(0.2, 0.35), height=(0.6, 1.0))
+@kind(words="rain butt, water barrel, barrel", radius=(0.2, 0.35), height=(0.6, 1.0))
 def rain_barrel(b: ObjectBuilder, radius: float, height: float) -> None:
     r = radius
     b.part(
@@ -653,7 +653,7 @@ def rain_barrel(b: ObjectBuilder, radius: float, height: float) -> None:
     knob(b, "tap", "barrel", (0, -r - 0.03, 0.15 * height + 0.02), 0.014, Z, high=0.03, reach=1.57, material="brass")
 
 
-@kind(words="rabbit hutch, dog house, pet house, hen house", width=(0.5, 1.2), height=(0.5, 1.0))
+@kind(words="rabbit hutch, pet house, hen house", width=(0.5, 1.2), height=(0.5, 1.0))
 def chicken_coop(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     t = 0.35 * width

@@ -281,7 +281,7 @@ def kind(
 
     Args:
         called: How people call it, singular; as the function if empty.
-        words: Other names, split at their commas.
+        words: Other names, split at their commas, besides those of `usual`.
         title: A few words for lists; `called` if empty.
         like: The kind that it is another way to build, which `all_kinds` leaves out; empty of a kind of its own.
         material: Of its base.
@@ -294,6 +294,7 @@ def kind(
     """
     given = {name: length(*item) if isinstance(item, tuple) else item for name, item in parameters.items()}
     asked = tuple(replace(item, name=name) for name, item in given.items())
+    usually = {word: what for group, what in (usual or {}).items() for word in phrases(group)}
 
     def register(draw: Callable[..., None]) -> Callable[..., None]:
         name = draw.__name__.rstrip("_")
@@ -307,7 +308,7 @@ def kind(
         KINDS[name] = Kind(
             name=name,
             title=title or said,
-            words=(said, *phrases(words)),
+            words=(said, *phrases(words), *usually),
             parameters=(
                 *asked,
                 *details_of(details or {}),
@@ -316,7 +317,7 @@ def kind(
             make=_carver(draw, taken) if carves else _drawer(draw, taken, name),
             material=material,
             walls=walls,
-            usual={word: what for group, what in (usual or {}).items() for word in phrases(group)},
+            usual=usually,
             part_words={part: phrases(said) for part, said in (part_words or {}).items()},
             like=like,
             about=draw.__doc__ or "",
