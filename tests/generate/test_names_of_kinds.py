@@ -9,20 +9,20 @@ import pytest
 from kinematify.generate.kind_search import key_of, kind_called
 from kinematify.generate.registry import all_kinds
 
-OTHER_THINGS = (
-    "library cart, hotel cart, hospital cart, ice cream cart, luggage cart, airline trolley, milling machine, laser cutter, dog, stone oven, "
-    "dining table, conference table, guitar case, picnic basket, hat box, thermostat, walkie talkie, wastebasket, deck "
-    "chair, poultry shears, hedge shears, pincers, spider, toothpaste tube, baby bottle, mop bucket, backhoe, monkey "
-    "wrench, dinner bell, pottery wheel, trebuchet, hair clip, gateleg table, fire ladder, potato ricer, lint roller, "
-    "headset, litter tray, shoe rack, stretcher, saucepan, cookie tin, mason jar, water dispenser, shock absorber, slow "
-    "cooker, cake dome, bathroom scale, dropper, massage table, marionette, camcorder, clavichord, conveyor belt, "
-    "vespa, transistor radio, microphone, music stand, hanging chair, webcam, dartboard, swiss army knife, barber "
-    "chair, gramophone, couch, doctor bag, ski lift, carpet sweeper, lorry, food truck, monorail, gas grill, watermill, "
-    "picnic table, power supply, dog house"
-).split(", ")
+OTHER_THINGS = """
+library cart, hotel cart, hospital cart, ice cream cart, luggage cart, airline trolley, milling machine, laser
+cutter, dog, stone oven, dining table, conference table, guitar case, picnic basket, hat box, thermostat,
+walkie talkie, wastebasket, deck chair, poultry shears, hedge shears, pincers, spider, toothpaste tube, baby
+bottle, mop bucket, backhoe, monkey wrench, dinner bell, pottery wheel, trebuchet, hair clip, gateleg table,
+fire ladder, potato ricer, lint roller, headset, litter tray, shoe rack, stretcher, saucepan, cookie tin,
+mason jar, water dispenser, shock absorber, slow cooker, cake dome, bathroom scale, dropper, massage table,
+marionette, camcorder, clavichord, conveyor belt, vespa, transistor radio, microphone, music stand, hanging
+chair, webcam, dartboard, swiss army knife, barber chair, gramophone, couch, doctor bag, ski lift, carpet
+sweeper, lorry, food truck, monorail, gas grill, watermill, picnic table, power supply, dog house
+"""
 
 
-@pytest.mark.parametrize("name", OTHER_THINGS)
+@pytest.mark.parametrize("name", " ".join(OTHER_THINGS.split()).split(", "))
 def test_another_object_has_no_kind(name):
     assert kind_called(key_of(name)) is None
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import asin, cos, degrees, hypot, pi, sin
+from math import asin, atan2, cos, degrees, hypot, pi, sin
 
 from manifold3d import Manifold
 
-from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.builder import ObjectBuilder, drawn_on
 from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.library.mechanisms import caster, in_fork
 from kinematify.generate.library.panels import grip
@@ -16,6 +16,7 @@ from kinematify.generate.procedural.solids import (
     Point,
     X,
     Z,
+    beam,
     bore,
     box,
     cylinder,
@@ -26,6 +27,7 @@ from kinematify.generate.procedural.solids import (
     slab,
     tray,
     union,
+    vector,
 )
 from kinematify.generate.procedural.workshop import Workshop
 
@@ -552,3 +554,52 @@ def suitcase(
         ]
         w.add("front", feet)
     w.settle()
+
+
+@kind(
+    "cantilever toolbox",
+    words="cantilever tool box, cantilever box, sewing box, cantilever sewing box, concertina toolbox",
+    material="wood",
+    part_words={"arm": "link, strut"},
+    details={"handle": 1},
+    width=(0.3, 0.6),
+    trays=whole(1, 3, default=2, words="compartment, tier", help="On each side."),
+    styles=False,
+)
+def cantilever_box(b: ObjectBuilder, width: float, trays: int) -> None:
+    """Trays on both sides that swing out like stairs, level on parallel arms."""
+    w, deep, side, high, pitch = width / 2, 0.12, 0.06, 0.06, 0.066
+    out = w + 0.03
+    b.part(
+        "body",
+        slab(w, deep, (0, 0.09)) - slab(w - 0.006, deep - 0.006, (0.006, 1)),
+        [slab((s * (w - 0.002), s * out), 0.012, (0.01, 0.03)) for s in (-1, 1)],
+        [slab((s * (out - 0.006), s * out), 0.012, (0.01, 0.16 + pitch * trays)) for s in (-1, 1)],
+        b.cylinder(0.01, (-out, 0, 0.15 + pitch * trays), (out, 0, 0.15 + pitch * trays)),
+        look="wood",
+    )
+    opens = 2 * atan2(side, pitch)
+    for s, name in ((-1, "front"), (1, "back")):
+        parent = "body"
+        for k in range(trays):
+            z = 0.124 + pitch * k
+            here, low = vector(0, 0.03 * s, z), vector(0, 0.09 * s, z - pitch)
+            arm, tray = f"arm_{name}_{k + 1}", f"tray_{name}_{k + 1}"
+            for t in (-1, 1):
+                x = t * (w + 0.004 + 0.006 * (k % 2)) * X
+                b.part(arm, beam(0.01, 0.004, here + x, low + x, X), look="steel")
+                for pin in (here, low):
+                    b.part(arm, b.cylinder(0.003, pin + x, pin + t * (w - 0.004) * X))
+            b.part(arm, b.cylinder(0.003, here + w * X, here - w * X))
+            y = sorted((s * 0.002, s * deep))
+            level = z - high / 2, z + high / 2
+            room = slab(w - 0.005, (y[0] + 0.005, y[1] - 0.005), (level[0] + 0.005, 1))
+            b.part(tray, slab(w, y, level) - room, look="wood")
+            for pin, carries in ((here, tray), (low, parent)):
+                b.cut(carries, b.cylinder(0.0042, pin + X, pin - X))
+            b.hinge(arm, parent, -s * X, low, opens)
+            if k:
+                b.follow(arm, f"arm_{name}_1")
+            b.hinge(tray, arm, -s * X, here, 0.0, lower=-opens)
+            b.follow(tray, f"arm_{name}_1", -1)
+            parent = tray

@@ -86,7 +86,7 @@ def sliding_gate(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     words="split air conditioner, air conditioning unit",
     width=(0.5, 0.9),
-    number=whole(1, 4, words="louver, louvre, vane, flap"),
+    number=whole(1, 6, default=2, usual=(1, 4), words="louver, louvre, vane, flap"),
 )
 def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
     w = width / 2

@@ -153,7 +153,7 @@ def shower_mixer(b: ObjectBuilder, width: float, radius: float) -> None:
 @kind(
     words="swing arm towel rail, swivel towel bar",
     height=(0.2, 0.6),
-    number=whole(2, 4, words="arm, bar, rail"),
+    number=whole(1, 6, default=3, usual=(2, 4), words="arm, bar, rail"),
 )
 def towel_rail(b: ObjectBuilder, height: float, number: int) -> None:
     """Arms that swing about an upright on a wall."""
@@ -222,7 +222,12 @@ def bread_bin(b: ObjectBuilder, width: float, radius: float) -> None:
     b.hinge("lid", "bin", -X, (0, -0.2 * radius, 0.05 + g), 0.5)
 
 
-@kind(words="knife holder, knife stand", width=(0.1, 0.2), height=(0.2, 0.28), number=whole(3, 6, words="knife"))
+@kind(
+    words="knife holder, knife stand",
+    width=(0.1, 0.2),
+    height=(0.2, 0.28),
+    number=whole(1, 8, default=4, usual=(3, 6), words="knife"),
+)
 def knife_block(b: ObjectBuilder, width: float, height: float, number: int) -> None:
     """Knives that are drawn out of a slanted block."""
     b.part(
@@ -300,6 +305,8 @@ def window_blind(b: ObjectBuilder, width: float, number: int) -> None:
     for k, z in enumerate(spread(number, 0, h - 0.01)):
         b.part(f"slat_{k}", slab(width / 2 - g, 0.025, (z - 0.001, z + 0.001)), look="metal")
         b.hinge(f"slat_{k}", "rail", X, (0, 0, z), 0.9, lower=-0.9, ajar=False)
+        if k:
+            b.follow(f"slat_{k}", "slat_0")
 
 
 @kind(walls=7, words="column fan, oscillating tower fan", height=(0.7, 1.1), radius=(0.06, 0.1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 from kinematify.generate.library.builder import ObjectBuilder, spread
-from kinematify.generate.library.kind import kind, whole
+from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import button, case, knob
 from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, slab
@@ -175,7 +175,7 @@ def teapot(b: ObjectBuilder, radius: float) -> None:
     b.slide("lid", "pot", Z, r)
 
 
-@kind(words="", width=(0.16, 0.3), depth=(0.1, 0.2))
+@kind(width=(0.16, 0.3), depth=(0.1, 0.2))
 def butter_dish(b: ObjectBuilder, width: float, depth: float) -> None:
     b.part("dish", slab(width / 2, depth / 2, (0, 0.012)), look="white ceramic")
     b.part("cover", slab(0.44 * width, 0.42 * depth, (0.013, 0.08)), slab(0.02, 0.01, (0.075, 0.1)), look="glass")
@@ -218,7 +218,7 @@ def egg_slicer(b: ObjectBuilder, size: float) -> None:
     b.hinge("frame", "base", -X, p(0, 0.075, 0.025), 1.6)
 
 
-@kind(words="spice carousel, revolving spice rack", number=whole(4, 8))
+@kind(words="spice carousel, revolving spice rack", number=whole(3, 9, default=6, usual=(4, 8), words="jar"))
 def spice_rack(b: ObjectBuilder, number: int) -> None:
     b.part("base", b.cylinder(0.08, 0, 0.02), b.cylinder(0.008, 0.01, 0.3), look="wood")
     b.part("rack", [b.cylinder(0.1, z, z + 0.012) for z in (0.03, 0.16)], b.tube(0.014, 0.01, 0.03, 0.28), look="wood")
@@ -315,7 +315,11 @@ def water_filter_jug(b: ObjectBuilder, radius: float, height: float) -> None:
     b.hinge("lid", "jug", -X, (0, radius, height + 0.001), 1.4)
 
 
-@kind(words="draft tower, beer dispenser, wine tap", height=(0.3, 0.45), number=whole(1, 4, words="handle, tap, lever"))
+@kind(
+    words="draft tower, beer dispenser, wine tap",
+    height=(0.3, 0.45),
+    number=whole(1, 8, default=2, usual=(1, 4), words="handle, tap, lever"),
+)
 def beer_tap(b: ObjectBuilder, height: float, number: int) -> None:
     width = 0.1 * number
     b.part("tower", slab(width / 2 + 0.02, 0.05, (0, 0.03)), slab(width / 2, 0.035, (0.02, height)), look="chrome")
@@ -562,11 +566,21 @@ def shower_cabin(b: ObjectBuilder, width: float, height: float) -> None:
     knob(b, "tap", "cabin", (0, w - 0.02, 1.1), 0.03, -Y, high=0.04, reach=3.0, material="chrome")
 
 
-@kind("bathtub", words="bath tub, walk in bathtub, bath, tub", length=(1.3, 1.7), width=(0.65, 0.8), height=(0.5, 0.6))
-def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float) -> None:
+@kind(
+    "walk in bathtub",
+    usual={"bathtub, bath tub, bath, tub": {"door": "no"}},
+    length=(1.3, 1.7),
+    width=(0.65, 0.8),
+    height=(0.5, 0.6),
+    door=yes(1, drawn=False),
+)
+def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float, door: bool) -> None:
     b.part("tub", box((0, 0, 0), (length, width, height)), look="white ceramic")
-    b.cut("tub", box((0.06, 0.06, 0.12), (length - 0.06, width - 0.06, 1)), slab((0.2, 0.7), 0.1, (0.15, 1)))
-    leaf(b, "door", "tub", (0.203, 0.0, 0.155), (0.697, 0.05, height), hinge=-X, out=-Y, reach=1.6, material="plastic")
+    b.cut("tub", box((0.06, 0.06, 0.12), (length - 0.06, width - 0.06, 1)))
+    if door:
+        b.cut("tub", slab((0.2, 0.7), 0.1, (0.15, 1)))
+        face = (0.203, 0.0, 0.155), (0.697, 0.05, height)
+        leaf(b, "door", "tub", *face, hinge=-X, out=-Y, reach=1.6, material="plastic")
     b.part(
         "tub",
         b.cylinder(0.02, (length - 0.03, width / 2, height), (length - 0.03, width / 2, height + 0.12)),

@@ -292,7 +292,7 @@ def pcr_machine(b: ObjectBuilder, width: float) -> None:
 
 @kind(
     words="optical rail, linear rail, lens rail, slide rail",
-    number=whole(1, 4, words="carriage, rider"),
+    number=whole(1, 8, default=2, usual=(1, 4), words="carriage, rider, lens holder"),
     length=(0.6, 1.4),
 )
 def optical_bench(b: ObjectBuilder, number: int, length: float) -> None:
@@ -337,7 +337,7 @@ def bunsen_burner(b: ObjectBuilder, size: float) -> None:
     knob(b, "valve", "base", p(0.045, -0.005, 0.03), 0.007 * size, -Y, high=0.014 * size)
 
 
-@kind(words="", size=(0.9, 1.1))
+@kind(size=(0.9, 1.1))
 def syringe_pump(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -435,7 +435,9 @@ def crutch(b: ObjectBuilder, height: float) -> None:
     b.slide("tube", "shaft", -Z, 0.25 * height, lower=-0.1 * height)
 
 
-@kind(words="pill organizer, weekly pill box", number=whole(4, 8, words="lid, compartment"))
+@kind(
+    words="pill organizer, weekly pill box", number=whole(1, 14, default=7, usual=(4, 8), words="lid, compartment, day")
+)
 def pill_box(b: ObjectBuilder, number: int) -> None:
     w = 0.03 * number / 2
     b.part("box", slab(w, 0.02, (0, 0.022)), look="blue")

@@ -98,33 +98,18 @@ def articulated_doll(b: ObjectBuilder, size: float) -> None:
         top = vector(x + s * 0.05 * size, 0, 0.9 * size)
         b.part(f"arm_{side}", b.rod(0.05 * size, top, top - 0.4 * size * Z))
         b.hinge(f"arm_{side}", "torso", -X, (x, 0, 0.9 * size), 2.5, lower=-0.5, ajar=False)
-        hip = vector(s * 0.09 * size, 0, 0.5 * size - g)
-        b.part(
-            f"leg_{side}",
-            b.cylinder(0.07 * size, hip, hip - 0.25 * size * Z)
-            if b.style.has_bore
-            else b.rod(0.07 * size, hip - 0.03 * size * Z, hip - 0.25 * size * Z),
-        )
-        b.hinge(
-            f"leg_{side}",
-            "torso",
-            -X,
-            hip,
-            0.02 if b.style.has_bore else 1.2,
-            lower=-0.02 if b.style.has_bore else -0.4,
-            ajar=False,
-        )
+        hip = vector(s * 0.09 * size, 0, 0.43 * size - g)
+        b.part(f"leg_{side}", b.rod(0.07 * size, hip, hip - 0.11 * size * Z))
+        b.hinge(f"leg_{side}", "torso", -X, hip, 1.2, lower=-0.4, ajar=False)
         if b.maybe():
-            knee = hip - (0.25 * size + g + (0.07 * size if not b.style.has_bore else 0)) * Z
+            knee = hip - (0.24 * size + g) * Z
+            toe = knee + size * vector(-0.06, -0.16, -0.19)
             b.part(
                 f"shin_{side}",
-                b.cylinder(0.06 * size, knee, knee - 0.18 * size * Z),
-                box(
-                    (knee[0] - 0.06 * size, -0.16 * size, knee[2] - 0.22 * size),
-                    (knee[0] + 0.06 * size, 0.06 * size, knee[2] - 0.17 * size),
-                ),
+                b.rod(0.06 * size, knee, knee - 0.12 * size * Z),
+                box(toe, toe + size * vector(0.12, 0.22, 0.05)),
             )
-            b.hinge(f"shin_{side}", f"leg_{side}", X, knee, 0.02 if b.style.has_bore else 1.5, ajar=False)
+            b.hinge(f"shin_{side}", f"leg_{side}", X, knee, 1.5, ajar=False)
 
 
 @kind(size=(0.08, 0.2))
@@ -145,7 +130,11 @@ def jack_in_the_box(b: ObjectBuilder, size: float) -> None:
     crank(b, "crank", "box", (size / 2, 0, 0.5 * size), X, 0.35 * size)
 
 
-@kind(words="counting frame, bead frame", width=(0.15, 0.4), number=whole(2, 4))
+@kind(
+    words="counting frame, bead frame",
+    width=(0.15, 0.4),
+    number=whole(1, 12, default=3, usual=(2, 4), words="rod, wire, row"),
+)
 def abacus(b: ObjectBuilder, width: float, number: int) -> None:
     """Beads that slide on rods."""
     h = 0.18 * width * number
@@ -395,7 +384,8 @@ def garage_door(b: ObjectBuilder, width: float, height: float, lift: bool) -> No
 
 
 @kind(
-    words="sliding window, hung window, vertical sliding window, double hung window",
+    words="sliding window",
+    usual={"sash window, hung window, vertical sliding window, double hung window": {"flat": "no"}},
     width=(0.6, 1.2),
     height=(0.9, 1.5),
     flat=yes(0.5),
@@ -485,7 +475,9 @@ def vending_machine(b: ObjectBuilder, width: float, depth: float, height: float)
 
 
 @kind(
-    words="one armed bandit, fruit machine, gambling machine", size=(0.3, 0.6), number=whole(2, 4, words="reel, drum")
+    words="one armed bandit, fruit machine, gambling machine",
+    size=(0.3, 0.6),
+    number=whole(1, 6, default=3, usual=(2, 4), words="reel, drum"),
 )
 def slot_machine(b: ObjectBuilder, size: float, number: int) -> None:
     """A lever at the side, reels in a window, a tray."""

@@ -94,12 +94,13 @@ def press(b: ObjectBuilder, height: float) -> None:
     )
     b.slide("ram", "frame", -Z, 0.06, ajar=False)
     lever(b, "lever", "frame", (0.05, 0.03, height - 0.06), X, vector(0, -0.8, 0.6), b.draw(0.2, 0.4), reach=1.2)
+    b.follow("ram", "lever", 0.05)
 
 
 @kind(
     words="valve, globe valve, stop valve, handwheel valve, needle valve, water valve",
     radius=(0.02, 0.15),
-    number=whole(3, 6, words="spoke"),
+    number=whole(3, 12, default=4, usual=(3, 6), words="spoke"),
 )
 def gate_valve(b: ObjectBuilder, radius: float, number: int) -> None:
     """A handwheel above a body between flanges."""
@@ -282,7 +283,7 @@ def knife_switch(b: ObjectBuilder, number: int, width: float) -> None:
     "lever console",
     words="signal box lever frame, railway lever frame, lever frame",
     width=(0.5, 1.2),
-    number=whole(2, 5, words="lever, handle"),
+    number=whole(1, 10, default=3, usual=(2, 5), words="lever, handle"),
 )
 def big_lever_console(b: ObjectBuilder, width: float, number: int) -> None:
     """Levers in slots on a desk, joysticks, pedals below."""
@@ -334,7 +335,7 @@ def bottle_jack(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     walls=9,
     words="telescopic mast, telescopic antenna, telescopic pole, telescoping boom",
-    number=whole(2, 4, words="section, stage, tube"),
+    number=whole(2, 5, default=3, usual=(2, 4), words="section, stage, tube"),
     radius=(0.02, 0.1),
     height=(0.4, 1.5),
     square=yes(0.5),
@@ -405,7 +406,7 @@ def conveyor(b: ObjectBuilder, number: int, width: float, size: float) -> None:
 
 @kind(
     words="gears, gearbox, set of gears, gear wheels, spur gears, gear pair, pair of gears, reduction gear, cogwheels",
-    number=whole(2, 4, words="gear, wheel, cog"),
+    number=whole(2, 8, default=3, usual=(2, 4), words="gear, wheel, cog"),
     radius=(0.03, 0.08),
 )
 def gear_train(b: ObjectBuilder, number: int, radius: float) -> None:

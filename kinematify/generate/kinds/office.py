@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos, pi, sin
 
 from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
@@ -11,7 +11,7 @@ from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 
-@kind(words="mechanical typewriter", number=whole(5, 9, words="key"))
+@kind(words="mechanical typewriter", number=whole(3, 12, default=7, usual=(5, 9), words="key"))
 def typewriter(b: ObjectBuilder, number: int) -> None:
     width = 0.34
     b.part(
@@ -230,7 +230,7 @@ def computer_keyboard(b: ObjectBuilder, columns: int, rows: int) -> None:
 
 @kind(
     words="rack cabinet, network cabinet, server cabinet",
-    number=whole(3, 6, words="server, drawer, unit"),
+    number=whole(1, 8, default=4, usual=(3, 6), words="server, drawer, unit"),
     height=(1.2, 2.0),
 )
 def server_rack(b: ObjectBuilder, number: int, height: float) -> None:
@@ -641,3 +641,29 @@ def work_light(b: ObjectBuilder, height: float) -> None:
     )
     b.cut("head", slab(0.14, (-0.1, -0.03), (height + 0.04, height + 0.19)))
     b.hinge("head", "stand", X, (0, 0, height + 0.11), 0.5, lower=-0.9)
+
+
+@kind(
+    "iris diaphragm",
+    words="iris, camera iris, aperture, iris aperture, mechanical iris, iris shutter, aperture diaphragm",
+    material="metal",
+    blades=whole(5, 14, default=8, words="blade, leaf, lamella"),
+    size=(0.7, 2),
+    styles=False,
+)
+def iris(b: ObjectBuilder, blades: int, size: float) -> None:
+    """Blades between two rings that close when the outer one is turned."""
+    p = b.sized(size)
+    top = 0.007 + 0.0012 * blades
+    b.part("base", p.tube(0.06, 0.036, 0, 0.004), p.tube(0.06, 0.057, 0, top), look="black metal")
+    b.part("ring", p.tube(0.066, 0.0605, 0, top), p.rod(0.003, (0.067, 0, top / 2), (0.085, 0, top / 2)), look="metal")
+    b.hinge("ring", "base", Z, (0, 0, 0), 1.0)
+    for k in range(blades):
+        a, z, name = 2 * pi * k / blades, 0.0046 + 0.0012 * k, f"blade_{k + 1}"
+        x, y = 0.05 * cos(a), 0.05 * sin(a)
+        arc = [(0.041 * cos(a + t), 0.041 * sin(a + t), 0.0055) for t in (0.5, 0.9, 1.3, 1.6)]
+        b.part("base", p.cylinder(0.0015, (x, y, 0.003), (x, y, z + 0.001)))
+        b.part(name, p.strip([(x, y, 0.004), *arc], z, z + 0.0008), look="steel")
+        b.cut(name, p.cylinder(0.002, (x, y, 0), (x, y, 1)))
+        b.hinge(name, "base", Z, p(x, y, z), 0.72)
+        b.follow(name, "ring", 0.72)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kinematify.generate.library.builder import ObjectBuilder
-from kinematify.generate.library.kind import kind, yes
+from kinematify.generate.library.builder import ObjectBuilder, spread
+from kinematify.generate.library.kind import kind, length, whole, yes
 from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, box, slab
 
@@ -81,3 +81,56 @@ def floor_hatch(b: ObjectBuilder, width: float, depth: float, high: float, rim: 
         reach=b.draw(1.2, 1.9),
         glazed=0.15,
     )
+
+
+@kind(
+    "garden gate",
+    words="gate, yard gate, fence gate, side gate, picket gate, wicket gate",
+    usual={"double gate, double garden gate, driveway gates": {"leaves": 2, "width": 2.4}},
+    material="wood",
+    width=length(0.6, 4, default=1.0, usual=(0.8, 1.4)),
+    height=length(0.6, 2, default=1.1, usual=(0.9, 1.4)),
+    leaves=whole(1, 2, default=1, words="leaf, wing, door"),
+    pickets=whole(2, 24, default=7, words="picket, bar, slat, board", help="Of every leaf."),
+    styles=False,
+)
+def gate(b: ObjectBuilder, width: float, height: float, leaves: int, pickets: int) -> None:
+    """Leaves of pickets between two posts, and a bolt."""
+    w = width / 2
+    b.part(
+        "posts",
+        [slab((s * w, s * (w + 0.09)), 0.045, (0, height + 0.1)) for s in (-1, 1)],
+        slab(w + 0.09, 0.045, (0, 0.02)),
+        look="wood",
+    )
+    g = max(b.gap(0.05), 0.004)
+    for k in range(leaves):
+        s = 1 - 2 * k
+        low, high = sorted((-s * (w - g), s * (w - g) if leaves == 1 else -s * g))
+        step = (high - low) / pickets
+        b.part(
+            f"leaf_{k + 1}",
+            [slab((low, high), (-0.03, -0.005), (z, z + 0.08)) for z in (0.2 * height, 0.75 * height)],
+            [
+                slab((x - 0.3 * step, x + 0.3 * step), (-0.005, 0.015), (0.08, height))
+                for x in spread(pickets, low, high)
+            ],
+            [slab((a, c), (-0.03, 0.015), (0.08, height)) for a, c in ((low, low + 0.05), (high - 0.05, high))],
+            look="wood",
+        )
+        b.hinge(f"leaf_{k + 1}", "posts", -s * Z, (-s * (w - g), -0.03, 0), 1.7)
+    # A bolt behind the rail of the last leaf: it reaches into the other post, or behind the other leaf.
+    s, end, last = (1, w, "leaf_1") if leaves == 1 else (-1, 0, "leaf_2")
+    here, level = end - s * 0.16, 0.75 * height + 0.04
+    spans = [sorted((x, x + s * 0.02)) for x in (here, here + s * 0.12)]
+    guides = [slab(span, (-0.055, -0.029), (level - 0.015, level + 0.015)) for span in spans]
+    b.part(last, b.painted(*guides, material="steel"))
+    b.part(
+        "bolt",
+        b.cylinder(0.007, (end + s * 0.05, -0.04, level), (end - s * 0.2, -0.04, level)),
+        b.cylinder(0.005, (here + s * 0.105, -0.04, level), (here + s * 0.105, -0.08, level)),
+        look="steel",
+    )
+    for name in (last, "posts"):
+        b.cut(name, b.cylinder(0.009, (end - s * 0.17, -0.04, level), (end + s * 0.06, -0.04, level)))
+    b.slide("bolt", last, -s * X, 0.06)

@@ -132,7 +132,7 @@ def weight_bench(b: ObjectBuilder, size: float) -> None:
     b.slide("bar", "frame", Z, 0.3)
 
 
-@kind("dart board cabinet", words="", width=(0.45, 0.6))
+@kind("dart board cabinet", width=(0.45, 0.6))
 def dartboard_cabinet(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
@@ -386,6 +386,7 @@ def bass_drum(b: ObjectBuilder, radius: float) -> None:
     b.hinge("beater", "drum", X, (0, 0.285, 0.235), 0.15, lower=-0.5)
     b.part("pedal", beam(0.06, 0.008, (0, 0.49, 0.025), (0, 0.33, 0.1)), look="steel")
     b.hinge("pedal", "drum", -X, (0, 0.49, 0.025), 0.1, lower=-0.25)
+    b.follow("beater", "pedal", -1.5)
 
 
 @kind(
@@ -514,3 +515,39 @@ def spyglass(b: ObjectBuilder, length: float, radius: float) -> None:
         look="brass",
     )
     b.slide("tube", "barrel", Y, 0.7 * length, lower=-0.05 * length)
+
+
+@kind(
+    words=(
+        "table football, football table, table soccer, kicker table, foosball, soccer table, table football game, "
+        "kicker"
+    ),
+    part_words={"rod": "bar, pole, row", "bumper": "ring"},
+    details={"leg": 4},
+    rods=whole(2, 12, default=8, words="bar, pole"),
+    players=whole(1, 5, default=3, words="figure, man", help="Of every rod."),
+    styles=False,
+)
+def foosball_table(b: ObjectBuilder, rods: int, players: int) -> None:
+    """Rods of two teams that slide and turn."""
+    long = 0.15 * rods
+    y = long / 2
+    b.part(
+        "table",
+        slab(0.37, y + 0.05, (0.6, 0.9)) - slab(0.34, y, (0.705, 1)),
+        [box((s * 0.3, t * (y - 0.03), 0), (s * 0.36, t * (y + 0.03), 0.6)) for s in (-1, 1) for t in (-1, 1)],
+        look="wood",
+    )
+    for k, at in enumerate(spread(rods, -y, y)):
+        b.cut("table", b.cylinder(0.0093, (-1, at, 0.86), (1, at, 0.86)))
+        b.part(f"bumper_{k + 1}", b.tube(0.018, 0.0093, (0.19, at, 0.86), (0.22, at, 0.86)), look="rubber")
+        b.slide(f"bumper_{k + 1}", "table", X, 0.1, -0.1, ajar=False)
+        men = [box((x - 0.015, at - 0.01, 0.78), (x + 0.015, at + 0.01, 0.88)) for x in spread(players, -0.17, 0.17)]
+        name = b.part(
+            f"rod_{k + 1}",
+            b.cylinder(0.0085, (-0.56, at, 0.86), (0.56, at, 0.86)),
+            b.cylinder(0.016, (0.56, at, 0.86), (0.68, at, 0.86)),
+            b.painted(*men, material="plastic", color="blue" if k % 2 else "red"),
+            look="chrome",
+        )
+        b.spin(name, f"bumper_{k + 1}", X, (0, at, 0.86))

@@ -28,7 +28,11 @@ from kinematify.generate.procedural.workshop import Workshop
     ),
     length=length(0.2, 3.0, default=0.9, usual=(0.5, 1.5), help="Sum of the links."),
     gripper=choice(
-        {"none": "", "jaws": "gripper, parallel gripper, jaw gripper", "fingers": "finger gripper, fingered gripper"},
+        {
+            "none": "",
+            "jaws": "gripper, parallel gripper, jaw gripper, two finger gripper",
+            "fingers": "finger gripper, fingered gripper",
+        },
         help="What is on its flange.",
         drawn=False,
     ),

@@ -412,3 +412,27 @@ def clock(b: ObjectBuilder, width: float, depth: float, frame: float, hands: int
         if k + 1 < n:
             b.cut(f"hand_{k + 1}", b.cylinder(1.003 * (r - thin), c - Y, c + Y))
         b.spin(f"hand_{k + 1}", "body", Y, c + y * Y)
+
+
+@kind(
+    words="secateur, pruning shears, garden secateurs, pruner, hand pruner, garden pruner, pruning scissors",
+    part_words={"blade": "jaw, cutter, handle"},
+    length=(0.15, 0.25),
+    styles=False,
+)
+def secateurs(b: ObjectBuilder, length: float) -> None:
+    """A hook and a blade that passes it."""
+    p = b.sized(length)
+    jaws = (
+        [(0, 0, 0.065), (0.05, 0.16, 0.03), (0.03, 0.33, 0.012)],
+        [(0, 0, 0.065), (0, 0.16, 0.05), (0.02, 0.34, 0.006)],
+    )
+    for k, (jaw, s) in enumerate(zip(jaws, (1, -1), strict=True)):
+        z = 0.0175 * k
+        grip = [(-s * 0.05, -0.18, 0.028), (-s * 0.075, -0.4, 0.032), (-s * 0.06, -0.62, 0.028)]
+        tang = p.strip([(0, 0, 0.06), (-s * 0.05, -0.2, 0.025)], z, z + 0.015)
+        handle = b.workshop.painted(*p.strip(grip, -0.015, 0.045))
+        b.part(f"blade_{k + 1}", p.strip(jaw, z, z + 0.015), tang, handle, look="steel")
+    b.part("blade_1", p.cylinder(0.02, 0, 0.04), p.cylinder(0.035, 0.036, 0.046))
+    b.cut("blade_2", b.cylinder(0.02 * length + 1.5 * b.gap(0.02 * length), -1, 1))
+    b.hinge("blade_2", "blade_1", Z, (0, 0, 0), 0.62)

@@ -238,7 +238,7 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
 
 @kind(
     words="planetarium model, solar system model, tellurion, model of the solar system",
-    number=whole(3, 8, words="planet"),
+    number=whole(1, 8, default=5, usual=(3, 8), words="planet"),
     size=(0.8, 1.4),
 )
 def orrery(b: ObjectBuilder, number: int, size: float) -> None:
@@ -461,7 +461,7 @@ def cam_follower(b: ObjectBuilder, radius: float) -> None:
     "ratchet and pawl",
     words="ratchet wheel, ratchet mechanism",
     radius=(0.03, 0.09),
-    number=whole(8, 16, words="tooth, teeth"),
+    number=whole(6, 24, default=12, usual=(8, 16), words="tooth, teeth"),
 )
 def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
     """The teeth lift the pawl by contact alone, and its weight brings it back; no joint couples them."""
@@ -667,6 +667,7 @@ def centrifugal_governor(b: ObjectBuilder, size: float) -> None:
             look="brass",
         )
         b.hinge(f"arm_{k}", "spindle", s * X, p(0, s * 0.025, 0.37), 0.6, lower=-0.1)
+    b.follow("arm_1", "arm_0")
 
 
 @kind(words="pulley and belt, timing belt drive, chain drive, two pulleys", radius=(0.04, 0.12))
@@ -712,14 +713,16 @@ def lead_screw(b: ObjectBuilder, length: float) -> None:
         b.cylinder(0.018, (-L - 0.05, 0, 0.05), (-L - 0.025, 0, 0.05)),
         look="steel",
     )
-    b.spin("screw", "base", X, (0, 0, 0.05))
+    lead, way = 0.008, 2 * L - 0.17  # of the nut per radian of the screw
+    b.hinge("screw", "base", X, (0, 0, 0.05), way / lead, ajar=False)
     b.part("nut", slab((-L + 0.05, -L + 0.11), 0.048, (0.03, 0.085)), look="black metal")
     b.cut(
         "nut",
         b.cylinder(0.0085, (-1, 0, 0.05), (1, 0, 0.05)),
         [b.cylinder(0.0075, (-1, y, 0.05), (1, y, 0.05)) for y in (-0.035, 0.035)],
     )
-    b.slide("nut", "base", X, 2 * L - 0.17)
+    b.slide("nut", "base", X, way)
+    b.follow("nut", "screw", lead)
 
 
 @kind(words="oil pump jack, oil pump, nodding donkey", size=(0.5, 1.5))

@@ -87,6 +87,7 @@ def toggle_clamp(b: ObjectBuilder, size: float) -> None:
         look="red steel",
     )
     b.hinge("handle", "base", Y, p(-0.018, 0, 0.016), 1.2)
+    b.follow("arm", "handle", 1.08)
 
 
 @kind(words="sealant gun, silicone gun", length=(0.2, 0.26))
@@ -362,9 +363,8 @@ def multimeter(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words="",
     width=(0.25, 0.4),
-    number=whole(3, 6, words="knob, dial"),
+    number=whole(1, 6, default=4, usual=(3, 6), words="knob, dial"),
 )
 def oscilloscope(b: ObjectBuilder, width: float, number: int) -> None:
     h = 0.16
@@ -467,7 +467,7 @@ def dial_indicator(b: ObjectBuilder, radius: float) -> None:
     b.hinge("needle", "case", Y, (0, 0, 0), 2.3, lower=-2.3)
 
 
-@kind(number=whole(3, 8, words="leaf, blade"), length=(0.08, 0.12))
+@kind(number=whole(2, 12, default=5, usual=(3, 8), words="leaf, blade"), length=(0.08, 0.12))
 def feeler_gauge(b: ObjectBuilder, number: int, length: float) -> None:
     b.part(
         "case",
@@ -687,7 +687,7 @@ def chicken_coop(b: ObjectBuilder, width: float, height: float) -> None:
     )
 
 
-@kind(words="bee hive", number=whole(3, 6, words="frame"))
+@kind(words="bee hive", number=whole(1, 8, default=4, usual=(3, 6), words="frame"))
 def beehive(b: ObjectBuilder, number: int) -> None:
     b.part(
         "box",
