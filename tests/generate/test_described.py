@@ -31,11 +31,11 @@ def overlaps(blueprint):
 IN_STEPS = [name for name in DESCRIBED if all_kinds()[name].draw]
 SAMPLE = [name for name in DESCRIBED if name not in IN_STEPS] + IN_STEPS[::9]
 COUNTED = [
-    (name, {parameter.name: int(bound)})
+    (name, {parameter.name: type(parameter.default)(bound)})
     for name in DESCRIBED
     if name not in IN_STEPS
     for parameter in all_kinds()[name].parameters
-    for bound in parameter.bounds
+    for bound in parameter.bounds or ()
     if bound != parameter.default
 ]
 
