@@ -39,7 +39,7 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
     # A round front and a straight back, between two levels.
     def oval(width: float, front: float, back: float, span: tuple[float, float]) -> Manifold:
         radius = 0.5 * width
-        round_part = cylinder(radius, (0, front + radius, span[0]), (0, front + radius, span[1]))
+        round_part = cylinder(radius, 0, front + radius, (span[0], span[1]))
         return hull(round_part, slab(0.8 * radius, (back - 0.01, back), (span[0], span[1])))
 
     # A bowl on a foot, with a deck that reaches back under the tank.
@@ -60,7 +60,7 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
         y, z = axis
         lower, upper = sorted(span)
         return hull(
-            cylinder(knuckle, (lower, y, z), (upper, y, z)),
+            cylinder(knuckle, (lower, upper), y, z),
             box((lower, back - 0.0002, heights[0]), (upper, back + 0.0001, heights[1])),
         )
 
@@ -92,7 +92,7 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
         lid_at, seat_at, post_at = spans
         of_lid = [*of_lid, knuckle_of(lid_at, axis, back, to_lid)]
         knuckles = [*knuckles, knuckle_of(seat_at, axis, back, to_seat)]
-        post = cylinder(knuckle, (post_at[0], y, z), (post_at[1], y, z))
+        post = cylinder(knuckle, (post_at[0], post_at[1]), y, z)
         xs = sorted(post_at)
         posts = [*posts, hull(post, box((xs[0], y - knuckle, height - 0.002), (xs[1], y + knuckle, height)))]
         ends = ((lid_at[0], y, z), (post_at[1], y, z))
@@ -185,12 +185,12 @@ def faucet(
         top = the_plate + 4.0 * pipe
         for k, x in enumerate(places):
             boss_2, hole_2, rotor_2 = stub((x, 0, top), (0, 0, 1), 1.4 * pipe, clearance, length=2.0 * pipe)
-            w.add("body", boss_2, cylinder(1.4 * pipe, (x, 0, 0.5 * the_plate), (x, 0, top)))
+            w.add("body", boss_2, cylinder(1.4 * pipe, x, 0, (0.5 * the_plate, top)))
             w.cut("body", hole_2)
             level = top + clearance + 1.6 * pipe
-            arms = [rod(0.5 * pipe, (x - 2.6 * pipe, 0, level), (x + 2.6 * pipe, 0, level))]
+            arms = [rod(0.5 * pipe, (x - 2.6 * pipe, x + 2.6 * pipe), 0, level)]
             if cross == "cross":
-                arms = [*arms, rod(0.5 * pipe, (x, -2.6 * pipe, level), (x, 2.6 * pipe, level))]
+                arms = [*arms, rod(0.5 * pipe, x, (-2.6 * pipe, 2.6 * pipe), level)]
             w.body(f"handle_{k + 1}", rotor_2, arms)
             w.turns(f"handle_{k + 1}", "body", (0, 0, 1), (x, 0, top), (0.0, 1.5 * pi), rest=open)
     elif handle == "swivel":

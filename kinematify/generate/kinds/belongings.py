@@ -160,7 +160,7 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
             found = [
                 hook,
                 cylinder(thick, level - 0.0001, grip, segments=32),
-                rod(thick, (2.0 * bend, 0, level), (2.0 * bend, 0, level + 0.012)),
+                rod(thick, 2.0 * bend, 0, (level, level + 0.012)),
             ]
         return found
 
@@ -249,7 +249,7 @@ def eyeglasses(
             for sx in (-1, 1)
             for sz in (-1, 1)
         ]
-        return hull(*[cylinder(radius - inset, (px, begin, pz), (px, stop, pz)) for px, pz in places])
+        return hull(*[cylinder(radius - inset, px, (begin, stop), pz) for px, pz in places])
 
     # Rims with lenses, a bridge and two pads for the nose.
     def frame() -> Sequence[Manifold]:

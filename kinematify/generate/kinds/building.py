@@ -533,8 +533,8 @@ def switch_panel(
 
     # A stick on a hub, and the room that it needs.
     def toggle(half: float, clearance: float) -> tuple[Manifold, Manifold]:
-        hub = cylinder(0.006, (-half, 0, 0), (half, 0, 0))
-        stick = hull(rod(0.0035, (0, 0, 0), (0, -0.01, 0)), rod(0.0045, (0, -0.022, 0), (0, -0.024, 0)))
+        hub = cylinder(0.006, (-half, half), 0, 0)
+        stick = hull(rod(0.0035, 0, (0, -0.01), 0), rod(0.0045, 0, (-0.022, -0.024), 0))
         wide = half + clearance
         return (hub + stick, slab(wide, (-1.0, 0.008 + clearance), 0.012 + clearance))
 
@@ -553,7 +553,7 @@ def switch_panel(
             solid, room = toggle(half_2, clearance)
         reach = half_2 + 0.0055
         tight = min(clearance, 0.5 * pin)
-        pins = cylinder(pin, (-reach, 0, 0), (reach, 0, 0))
+        pins = cylinder(pin, (-reach, reach), 0, 0)
         place = ((k + 0.5) * pitch - half + 0.006, pivot, level)
         w.cut("plate", room.translate(place))
         w.cut("plate", bore(pin, tight, (-reach - tight, 0, 0), (reach + tight, 0, 0)).translate(place))

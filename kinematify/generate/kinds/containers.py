@@ -41,11 +41,7 @@ from kinematify.generate.procedural.workshop import Workshop
         "storage bench, hope chest, blanket chest, toy box, toy chest": {"width": 1.1, "depth": 0.45, "height": 0.5},
         "cool box, esky, cooler, ice chest": {"width": 0.6, "depth": 0.4, "height": 0.4},
         "lunchbox, pencil case, gift box, ring box, glasses case": {"width": 0.25, "depth": 0.15, "height": 0.1},
-        "briefcase, record case, camera case, cash box, file box": {
-            "width": 0.45,
-            "depth": 0.3,
-            "height": 0.2,
-        },
+        "briefcase, record case, camera case, cash box, file box": {"width": 0.45, "depth": 0.3, "height": 0.2},
         (
             "linen chest, dowry chest, blanket box, storage bin, recycling bin, recycling box, deck box, cushion box, "
             "coffer, log box, coal box, storage chest, storage trunk, pirate chest, steamer trunk"
@@ -213,7 +209,7 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         its_ring = cylinder(bead, held, held + 0.002) - cylinder(its_neck - 0.0001, -1.0, 1.0)
         w.add("body", its_ring)
         ribs = [
-            cylinder(0.0008, (outer * cos(a), outer * sin(a), bottom), (outer * cos(a), outer * sin(a), top))
+            cylinder(0.0008, outer * cos(a), outer * sin(a), (bottom, top))
             for a in [2.0 * pi * k / the_ribs for k in range(the_ribs)]
         ]
         hollow = cylinder(inner, bottom + 0.003, top) + cylinder(lip, -1.0, top)
@@ -311,13 +307,11 @@ def bucket(
     for side in (-1.0, 1.0):
         eye = (side * (reach - wire), side * (reach + wire))
         face = side * (reach - wire - clearance - bend)
-        boss = cylinder(2.0 * stud, (side * 0.3 * radius, 0, level), (face, 0, level))
-        shaft = cylinder(stud, (side * 0.3 * radius, 0, level), (eye[1] + side * (clearance + 0.0001), 0, level))
-        head = cylinder(
-            1.9 * stud, (eye[1] + side * clearance, 0, level), (eye[1] + side * (clearance + wire), 0, level)
-        )
+        boss = cylinder(2.0 * stud, (side * 0.3 * radius, face), 0, level)
+        shaft = cylinder(stud, (side * 0.3 * radius, eye[1] + side * (clearance + 0.0001)), 0, level)
+        head = cylinder(1.9 * stud, (eye[1] + side * clearance, eye[1] + side * (clearance + wire)), 0, level)
         w.add("body", boss, shaft, head)
-        eyes = [*eyes, cylinder(2.2 * stud, (eye[0], 0, level), (eye[1], 0, level))]
+        eyes = [*eyes, cylinder(2.2 * stud, (eye[0], eye[1]), 0, level)]
         holes = [*holes, bore(stud, clearance, (side * 0.5 * reach, 0, level), (side * 2.0 * reach, 0, level))]
     w.cut("body", bucket_inside)
     lies = asin(min(0.9, (below + 1.2 * grip + clearance) / (0.9 * reach)))
@@ -400,7 +394,7 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         inner = wide - max(clearance, 0.0005)
         arm = slab(inner, (tip + 0.02, back_2), (level_2 - radius, level_2 + radius))
         plate = slab(1.6 * wide, (tip, tip + 0.035), (level_2 - radius, level_2 + radius))
-        hub = cylinder(1.4 * radius, (-inner, back_2, level_2), (inner, back_2, level_2))
+        hub = cylinder(1.4 * radius, (-inner, inner), back_2, level_2)
         w.body("pedal", arm, plate, hub, cylinder(radius, *pin), material="steel")
         w.turns("pedal", "body", (1, 0, 0), (0, back_2, level_2), (0.0, pedal), rest=open)
     elif lid == "swing":
@@ -474,7 +468,7 @@ def suitcase(
         top_2 = top - inset
         radius = round - inset
         places = [(x, z) for x in (radius - half, half - radius) for z in (bottom_2 + radius, top_2 - radius)]
-        return hull(*[cylinder(radius, (x, start, z), (x, end, z), segments=32) for x, z in places])
+        return hull(*[cylinder(radius, x, (start, end), z, segments=32) for x, z in places])
 
     # One half, open at y = `mouth`, with grooves in its broad face.
     def shell(mouth: float, back: float) -> Manifold:
@@ -526,11 +520,11 @@ def suitcase(
         grip = top + 0.012
         tubes: list[Manifold] = []
         for side in (-x, x):
-            w.add("body", cylinder(tube + clearance + 0.003, (side, y, bottom + 0.02), (side, y, top)))
-            tubes = [*tubes, cylinder(tube, (side, y, low + clearance), (side, y, grip))]
+            w.add("body", cylinder(tube + clearance + 0.003, side, y, (bottom + 0.02, top)))
+            tubes = [*tubes, cylinder(tube, side, y, (low + clearance, grip))]
         for side in (-x, x):
             w.cut("body", bore(tube, clearance, (side, y, low), (side, y, top + 1.0)))
-        bar = rod(0.009, (-x, y, grip), (x, y, grip))
+        bar = rod(0.009, (-x, x), y, grip)
         w.body("handle", tubes, bar, material="metal")
         way = 0.75 * (top - low)
         w.slides("handle", "body", (0, 0, 1), (0, y, top), (0.0, way), rest=open)
@@ -541,7 +535,7 @@ def suitcase(
     front = [("front", -x_2, -y_2), ("front", x_2, -y_2)]
     places = {2: back, 3: [*back, ("front", 0.0, -y_2)], 4: [*back, *front]}[wheels]
     for k, (parent, px, py) in enumerate(places):
-        w.add(parent, cylinder(0.009, (px, py, bottom), (px, py, bottom + 0.028)))
+        w.add(parent, cylinder(0.009, px, py, (bottom, bottom + 0.028)))
         if wheels == 2:
             with drawn_on(w, clearance) as b:
                 in_fork(b, f"wheel_{k + 1}", parent, (px, py, wheel), wheel, 0.02, bottom + 0.001)
@@ -575,7 +569,7 @@ def cantilever_box(b: ObjectBuilder, width: float, trays: int) -> None:
         slab(w, deep, (0, 0.09)) - slab(w - 0.006, deep - 0.006, (0.006, 1)),
         [slab((s * (w - 0.002), s * out), 0.012, (0.01, 0.03)) for s in (-1, 1)],
         [slab((s * (out - 0.006), s * out), 0.012, (0.01, 0.16 + pitch * trays)) for s in (-1, 1)],
-        b.cylinder(0.01, (-out, 0, 0.15 + pitch * trays), (out, 0, 0.15 + pitch * trays)),
+        b.cylinder(0.01, (-out, out), 0, 0.15 + pitch * trays),
         look="wood",
     )
     opens = 2 * atan2(side, pitch)
@@ -600,6 +594,6 @@ def cantilever_box(b: ObjectBuilder, width: float, trays: int) -> None:
             b.hinge(arm, parent, -s * X, low, opens)
             if k:
                 b.follow(arm, f"arm_{name}_1")
-            b.hinge(tray, arm, -s * X, here, 0.0, lower=-opens)
+            b.hinge(tray, arm, -s * X, here, 0.0, -opens)
             b.follow(tray, f"arm_{name}_1", -1)
             parent = tray

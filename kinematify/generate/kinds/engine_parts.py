@@ -26,12 +26,12 @@ def disc_brake(b: ObjectBuilder, radius: float) -> None:
         p.slab(0.35, (0.2, 0.3), (0.7, 1.1)),
         look="grey steel",
     )
-    b.bore("carrier", p.cylinder(0.13, (0, -1, 0), (0, 1, 0)))
+    b.bore("carrier", p.cylinder(0.13, 0, (-1, 1), 0))
     b.part(
         "disc",
-        p.cylinder(1, (0, -0.03, 0), (0, 0.03, 0)),
-        p.cylinder(0.12, (0, -0.2, 0), (0, 0.4, 0)),
-        p.cylinder(0.35, (0, -0.15, 0), (0, 0, 0)),
+        p.cylinder(1, 0, (-0.03, 0.03), 0),
+        p.cylinder(0.12, 0, (-0.2, 0.4), 0),
+        p.cylinder(0.35, 0, (-0.15, 0), 0),
         look="steel",
     )
     b.spin("disc", "carrier", Y, (0, 0, 0))
@@ -59,16 +59,12 @@ def camshaft(b: ObjectBuilder, followers: int) -> None:
         slab(0.5 * L, 0.03, (0.19, 0.22)),
         look="metal",
     )
-    b.bore("frame", b.cylinder(0.0108, (-L, 0, 0.08), (L, 0, 0.08)))
+    b.bore("frame", b.cylinder(0.0108, (-L, L), 0, 0.08))
     b.part(
         "shaft",
-        b.cylinder(0.01, (-0.5 * L - 0.03, 0, 0.08), (0.5 * L + 0.06, 0, 0.08)),
+        b.cylinder(0.01, (-0.5 * L - 0.03, 0.5 * L + 0.06), 0, 0.08),
         [
-            b.cylinder(
-                0.02,
-                (x - 0.012, 0.012 * cos(2.1 * k), 0.08 + 0.012 * sin(2.1 * k)),
-                (x + 0.012, 0.012 * cos(2.1 * k), 0.08 + 0.012 * sin(2.1 * k)),
-            )
+            b.cylinder(0.02, (x - 0.012, x + 0.012), 0.012 * cos(2.1 * k), 0.08 + 0.012 * sin(2.1 * k))
             for k, x in enumerate([0.08 * (k - 0.5 * (n - 1)) for k in range(n)])
         ],
         look="steel",
@@ -76,11 +72,11 @@ def camshaft(b: ObjectBuilder, followers: int) -> None:
     b.spin("shaft", "frame", X, (0, 0, 0.08))
     for k in range(n):
         x = 0.08 * (k - 0.5 * (n - 1))
-        b.bore("frame", b.cylinder(0.0068, (x, 0, 0.15), (x, 0, 0.3)))
+        b.bore("frame", b.cylinder(0.0068, x, 0, (0.15, 0.3)))
         b.part(
             f"follower_{k + 1}",
-            b.cylinder(0.006, (x, 0, 0.13), (x, 0, 0.25)),
-            b.cylinder(0.016, (x, 0, 0.127), (x, 0, 0.133)),
+            b.cylinder(0.006, x, 0, (0.13, 0.25)),
+            b.cylinder(0.016, x, 0, (0.127, 0.133)),
             look="steel",
         )
         b.slide(f"follower_{k + 1}", "frame", Z, 0.016, lower=-0.008)
@@ -92,20 +88,18 @@ def gear_pump(b: ObjectBuilder, radius: float) -> None:
     p = b.sized(r)
     b.part(
         "housing",
-        p.cylinder(1.6, (-0.85, -0.5, 0), (-0.85, 0.4, 0)),
-        p.cylinder(1.6, (0.85, -0.5, 0), (0.85, 0.4, 0)),
+        p.cylinder(1.6, -0.85, (-0.5, 0.4), 0),
+        p.cylinder(1.6, 0.85, (-0.5, 0.4), 0),
         p.slab(0.85, (-0.5, 0.4), 1.6),
         look="metal",
     )
-    b.cut(
-        "housing", p.cylinder(1.12, (-0.85, -1, 0), (-0.85, 0.05, 0)), p.cylinder(1.12, (0.85, -1, 0), (0.85, 0.05, 0))
-    )
-    b.bore("housing", p.cylinder(0.29, (-0.85, -1, 0), (-0.85, 1, 0)), p.cylinder(0.29, (0.85, -1, 0), (0.85, 0.3, 0)))
+    b.cut("housing", p.cylinder(1.12, -0.85, (-1, 0.05), 0), p.cylinder(1.12, 0.85, (-1, 0.05), 0))
+    b.bore("housing", p.cylinder(0.29, -0.85, (-1, 1), 0), p.cylinder(0.29, 0.85, (-1, 0.3), 0))
     for s, name in zip((-1, 1), ("drive_gear", "idler"), strict=False):
         b.part(
             name,
-            p.cylinder(0.72, (s * 0.85, -0.4, 0), (s * 0.85, 0, 0)),
-            b.cylinder(0.25 * r, (s * 0.85 * r, -0.4 * r, 0), (s * 0.85 * r, 0.9 * r if s < 0 else 0.25 * r, 0)),
+            p.cylinder(0.72, s * 0.85, (-0.4, 0), 0),
+            b.cylinder(0.25 * r, s * 0.85 * r, (-0.4 * r, 0.9 * r if s < 0 else 0.25 * r), 0),
             [
                 beam(
                     0.16 * r,

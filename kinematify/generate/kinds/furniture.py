@@ -31,12 +31,7 @@ def sideboard_with_sliding_doors(b: ObjectBuilder, width: float, height: float, 
         )
         if b.style.grips != "none":
             b.part(
-                f"door_{k}",
-                b.cylinder(
-                    0.03,
-                    (0.85 * s * width / 2, y - 0.0181 - (0.002 if k else 0), height / 2),
-                    (0.85 * s * width / 2, y, height / 2),
-                ),
+                f"door_{k}", b.cylinder(0.03, 0.85 * s * width / 2, (y - 0.0181 - (0.002 if k else 0), y), height / 2)
             )
         b.slide(f"door_{k}", "case", -s * X, width / 2 - 0.04)
 
@@ -122,9 +117,7 @@ def crib(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
         b.part("cot", box((x - 0.02, 0, 0), (x + 0.02, depth, height)))
     b.part("cot", box((0, depth - 0.03, 0.25), (width, depth, height)))
     g = b.gap(0.05)
-    bars = [
-        b.cylinder(0.008, (x, -0.025, 0.32), (x, -0.025, height)) for x in spread(b.count(8, 16), 0.04, width - 0.04)
-    ]
+    bars = [b.cylinder(0.008, x, -0.025, (0.32, height)) for x in spread(b.count(8, 16), 0.04, width - 0.04)]
     rails = [box((0.021 + g, -0.045, z), (width - 0.021 - g, -0.005, z + 0.04)) for z in (0.3, height - 0.04)]
     b.part("side", bars, rails)
     if b.maybe():
@@ -183,7 +176,7 @@ def roller_shutter_cabinet(b: ObjectBuilder, width: float, height: float) -> Non
     z1 = height * b.draw(0.45, 0.95)
     b.part("shutter", slab(width / 2 - 0.005 - g, (-0.015 - g, -g), (z0, z1)))
     for z in spread(int((z1 - z0) / 0.05), z0, z1):
-        b.part("shutter", b.cylinder(0.008, (-width / 2 + 0.01, -0.015 - g, z), (width / 2 - 0.01, -0.015 - g, z)))
+        b.part("shutter", b.cylinder(0.008, (-width / 2 + 0.01, width / 2 - 0.01), -0.015 - g, z))
     grip(b, "shutter", (0, -0.015 - g, z0 + 0.06), -Y, X, 0.12)
     b.slide("shutter", "cabinet", Z, 0.7 * (z1 - z0))
 
@@ -210,7 +203,7 @@ def bunk_bed(b: ObjectBuilder, width: float, height: float, number: int) -> None
     b.part(
         "ladder",
         [box((x + a, -0.035, 0), (x + a + 0.04, -0.0005, height)) for a in (0, 0.36)],
-        [b.cylinder(0.015, (x + 0.02, -0.018, z), (x + 0.38, -0.018, z)) for z in spread(5, 0.1, height - 0.2)],
+        [b.cylinder(0.015, (x + 0.02, x + 0.38), -0.018, z) for z in spread(5, 0.1, height - 0.2)],
         look="wood",
     )
     b.fix("ladder", "bed")

@@ -25,22 +25,17 @@ def jigsaw(b: ObjectBuilder, size: float) -> None:
         p.slab((0.05, 0.08), 0.02, (0.09, 0.16)),
         look="green",
     )
-    b.bore("body", p.cylinder(0.006, (0.075, 0, 0), (0.075, 0, 0.085)))
+    b.bore("body", p.cylinder(0.006, 0.075, 0, (0, 0.085)))
     b.cut("body", p.slab((-0.001, 0.031), 0.009, (0.13, 0.152)))
     b.part(
         "base_plate",
         p.slab((-0.09, 0.07), 0.04, (0, 0.004)),
-        p.cylinder(0.012, (-0.06, 0, 0.016), (0.04, 0, 0.016)),
+        p.cylinder(0.012, (-0.06, 0.04), 0, 0.016),
         p.slab((-0.06, 0.04), 0.008, (0.003, 0.016)),
         look="steel",
     )
-    b.hinge("base_plate", "body", X, p(0, 0, 0.016), 0.3, lower=-0.3)
-    b.part(
-        "blade",
-        p.cylinder(0.005, (0.075, 0, -0.01), (0.075, 0, 0.07)),
-        p.slab((0.07, 0.08), 0.001, (-0.09, 0.0)),
-        look="steel",
-    )
+    b.hinge("base_plate", "body", X, p(0, 0, 0.016), 0.3, -0.3)
+    b.part("blade", p.cylinder(0.005, 0.075, 0, (-0.01, 0.07)), p.slab((0.07, 0.08), 0.001, (-0.09, 0.0)), look="steel")
     b.slide("blade", "body", Z, 0.012, lower=-0.008)
     b.part("trigger", p.slab((0.0, 0.03), 0.008, (0.128, 0.142)), look="black")
     b.slide("trigger", "body", Z, 0.006)
@@ -58,7 +53,7 @@ def hedge_trimmer(b: ObjectBuilder, length: float) -> None:
         slab((-0.15, 0.1), 0.045, 0.05),
         beam(0.03, 0.03, (-0.14, 0, 0.02), (-0.32, 0, 0.02)),
         [b.rod(0.01, (0, s * 0.045, 0), (0, s * 0.09, 0.12)) for s in (-1, 1)],
-        b.rod(0.01, (0, -0.09, 0.12), (0, 0.09, 0.12)),
+        b.rod(0.01, 0, (-0.09, 0.09), 0.12),
         slab((0.1, 0.1 + length), 0.035, (-0.006, -0.001)),
         look="orange",
     )
@@ -87,8 +82,8 @@ def nail_gun(b: ObjectBuilder, size: float) -> None:
         p.slab((-0.17, -0.03), 0.022, (0.03, 0.036)),
         look="yellow",
     )
-    b.bore("body", p.cylinder(0.012, (0.01, 0, 0), (0.01, 0, 0.1)))
-    b.part("nose", p.cylinder(0.011, (0.01, 0, -0.03), (0.01, 0, 0.08)), look="steel")
+    b.bore("body", p.cylinder(0.012, 0.01, 0, (0, 0.1)))
+    b.part("nose", p.cylinder(0.011, 0.01, 0, (-0.03, 0.08)), look="steel")
     b.slide("nose", "body", Z, 0.012)
     b.part("trigger", p.slab((-0.075, -0.05), 0.009, (0.145, 0.17)), look="black")
     b.slide("trigger", "body", Z, 0.006)
@@ -102,12 +97,12 @@ def glue_gun(b: ObjectBuilder, size: float) -> None:
     b.part(
         "body",
         p.slab((-0.08, 0.07), 0.018, (0.1, 0.15)),
-        p.cone(0.012, 0.003, (0.068, 0, 0.125), (0.11, 0, 0.125)),
+        p.cone(0.012, 0.003, (0.068, 0.11), 0, 0.125),
         p.beam(0.035, 0.03, (-0.05, 0, 0.11), (-0.08, 0, 0.01), Y),
         look="blue",
     )
-    b.bore("body", p.cylinder(0.0065, (-0.1, 0, 0.125), (0, 0, 0.125)))
-    b.part("stick", p.cylinder(0.0055, (-0.14, 0, 0.125), (-0.01, 0, 0.125)), look="white")
+    b.bore("body", p.cylinder(0.0065, (-0.1, 0), 0, 0.125))
+    b.part("stick", p.cylinder(0.0055, (-0.14, -0.01), 0, 0.125), look="white")
     b.slide("stick", "body", X, 0.008, lower=-0.04)
     b.cut("body", p.slab((-0.013, 0.01), 0.008, (0, 0.112)))
     b.part("trigger", p.beam(0.014, 0.012, (0, 0, 0.103), (-0.02, 0, 0.03), Y), look="black")
@@ -129,7 +124,7 @@ def scroll_saw(b: ObjectBuilder, size: float) -> None:
         p.box((0.02, -0.1, 0.055), (0.06, -0.085, 0.148)),
         look="blue steel",
     )
-    b.bore("base", p.cylinder(0.007, (0.14, 0, 0.02), (0.14, 0, 0.35)))
+    b.bore("base", p.cylinder(0.007, 0.14, 0, (0.02, 0.35)))
     b.part(
         "table",
         p.slab((-0.05, 0.22), 0.14, (0.165, 0.175)),
@@ -137,13 +132,8 @@ def scroll_saw(b: ObjectBuilder, size: float) -> None:
         look="metal",
     )
     b.cut("table", p.slab((0.128, 0.152), 0.07, (0, 1)))
-    b.hinge("table", "base", X, p(0.04, -0.075, 0.13), 0.2, lower=-0.1)
-    b.part(
-        "blade",
-        p.cylinder(0.006, (0.14, 0, 0.29), (0.14, 0, 0.34)),
-        p.slab((0.138, 0.142), 0.0008, (0.05, 0.3)),
-        look="steel",
-    )
+    b.hinge("table", "base", X, p(0.04, -0.075, 0.13), 0.2, -0.1)
+    b.part("blade", p.cylinder(0.006, 0.14, 0, (0.29, 0.34)), p.slab((0.138, 0.142), 0.0008, (0.05, 0.3)), look="steel")
     b.slide("blade", "base", Z, 0.006, lower=-0.008)
     knob(b, "knob", "base", [0.05 * size, -0.12 * size, 0.03 * size], 0.015 * size, -Y, high=0.015 * size)
 
@@ -160,12 +150,12 @@ def paint_roller(b: ObjectBuilder, width: float) -> None:
         b.cylinder(0.014, 0, 0.13),
         b.rod(0.004, 0.12, 0.2),
         b.rod(0.004, (0, 0, 0.2), (-0.5 * width - 0.02, 0, 0.23)),
-        b.rod(0.004, (-0.5 * width - 0.02, 0, 0.23), (-0.5 * width - 0.02, 0, 0.3)),
-        b.cylinder(0.004, (-0.5 * width - 0.022, 0, 0.3), (0.5 * width, 0, 0.3)),
+        b.rod(0.004, -0.5 * width - 0.02, 0, (0.23, 0.3)),
+        b.cylinder(0.004, (-0.5 * width - 0.022, 0.5 * width), 0, 0.3),
         look="red",
     )
-    b.part("roller", b.cylinder(0.025, (-0.5 * width, 0, 0.3), (0.5 * width, 0, 0.3)), look="white")
-    b.cut("roller", b.cylinder(0.0048, (-width, 0, 0.3), (width, 0, 0.3)))
+    b.part("roller", b.cylinder(0.025, (-0.5 * width, 0.5 * width), 0, 0.3), look="white")
+    b.cut("roller", b.cylinder(0.0048, (-width, width), 0, 0.3))
     b.spin("roller", "handle", X, (0, 0, 0.3))
 
 
@@ -199,17 +189,14 @@ def folding_ruler(b: ObjectBuilder, segments: int) -> None:
         b.part(
             f"segment_{k + 1}",
             beam(0.016, 0.003, (0, 0, z), (0.23, 0, z)),
-            b.cylinder(0.003, (x, 0, z - 0.0025), (x, 0, z)),
+            b.cylinder(0.003, x, 0, (z - 0.0025, z)),
             look="yellow wood",
         )
         b.hinge(f"segment_{k + 1}", f"segment_{k}", (1 if k % 2 else -1) * Z, [x, 0, z], 3.1)
 
 
 @kind(
-    words="octant",
-    part_words={"arm": "index arm, index, alidade"},
-    details={"telescope": 1, "arc": 1},
-    size=(0.9, 1.2),
+    words="octant", part_words={"arm": "index arm, index, alidade"}, details={"telescope": 1, "arc": 1}, size=(0.9, 1.2)
 )
 def sextant(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
@@ -220,13 +207,13 @@ def sextant(b: ObjectBuilder, size: float) -> None:
             p.rod(0.007, (0.2 * sin(a), 0, 0.2 - 0.2 * cos(a)), (0.2 * sin(a + 0.1), 0, 0.2 - 0.2 * cos(a + 0.1)))
             for a in [-0.55 + 0.1 * k for k in range(11)]
         ],
-        p.cylinder(0.01, (0, -0.014, 0.2), (0, 0.006, 0.2)),
-        p.cylinder(0.012, (-0.09, 0.025, 0.12), (0.03, 0.025, 0.12)),
+        p.cylinder(0.01, 0, (-0.014, 0.006), 0.2),
+        p.cylinder(0.012, (-0.09, 0.03), 0.025, 0.12),
         p.box((-0.06, 0, 0.1), (-0.05, 0.025, 0.12)),
         p.box((0.01, 0, 0.1), (0.03, 0.025, 0.12)),
-        p.rod(0.004, (-0.07, 0, 0.1), (0.07, 0, 0.1)),
+        p.rod(0.004, (-0.07, 0.07), 0, 0.1),
         look="brass",
     )
     b.part("arm", p.beam(0.03, 0.004, (0, -0.0105, 0.225), (0, -0.0105, -0.03), Y), look="brass")
-    b.cut("arm", p.cylinder(0.0106, (0, -1, 0.2), (0, 1, 0.2)))
-    b.hinge("arm", "frame", Y, p(0, 0, 0.2), 0.5, lower=-0.5)
+    b.cut("arm", p.cylinder(0.0106, 0, (-1, 1), 0.2))
+    b.hinge("arm", "frame", Y, p(0, 0, 0.2), 0.5, -0.5)

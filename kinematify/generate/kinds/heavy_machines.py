@@ -61,7 +61,7 @@ def excavator(
             slab(half, (-0.8 * long, long), (low, top)),
             box((-half, -0.75 * long, top - 0.001), (-0.2 * tracks_width, 0.1 * long, top + cab)),
             slab(half, (0.25 * long, 0.7 * long), (top - 0.001, top + 0.6 * cab)),
-            cylinder(min(half, 0.5 * long), (0, 0.55 * long, low), (0, 0.55 * long, top + 0.4 * cab)),
+            cylinder(min(half, 0.5 * long), 0, 0.55 * long, (low, top + 0.4 * cab)),
         )
         window = box((-2.0, -0.68 * long, top + 0.45 * cab), (-half + 0.01, 0.02 * long, top + 0.92 * cab))
         front = box(
@@ -77,8 +77,8 @@ def excavator(
         outer = 0.42 * size
         wall = 0.03 * size
         centre = start + outer
-        shell = cylinder(outer, (-half, 0, centre), (half, 0, centre))
-        shell = shell - cylinder(outer - wall, (wall - half, 0, centre), (half - wall, 0, centre))
+        shell = cylinder(outer, (-half, half), 0, centre)
+        shell = shell - cylinder(outer - wall, (wall - half, half - wall), 0, centre)
         shell = shell.trim_by_plane((0, 1, 0), -0.3 * outer)
         lip = centre + sqrt(outer * outer - 0.3 * outer * (0.3 * outer))
         teeth = [

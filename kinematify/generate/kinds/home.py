@@ -16,16 +16,16 @@ def lever_handle(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part("plate", p.slab(0.022, (0, 0.008), 0.12), look="brass")
     lever(b, "lever", "plate", p(0, 0, 0.05), -Y, X, 0.12 * size, reach=0.6, material="brass")
-    b.bore("plate", p.cylinder(0.008, (0, -0.1, -0.05), (0, 0.1, -0.05)))
+    b.bore("plate", p.cylinder(0.008, 0, (-0.1, 0.1), -0.05))
     b.part(
         "key",
-        p.cylinder(0.0068, (0, -0.001, -0.05), (0, 0.007, -0.05)),
-        p.cylinder(0.003, (0, -0.02, -0.05), (0, 0.03, -0.05)),
+        p.cylinder(0.0068, 0, (-0.001, 0.007), -0.05),
+        p.cylinder(0.003, 0, (-0.02, 0.03), -0.05),
         p.torus(0.012, 0.003, (0, -0.033, -0.05), X),
         p.slab(0.002, (0.018, 0.03), (-0.062, -0.05)),
         look="steel",
     )
-    b.hinge("key", "plate", -Y, p(0, 0, -0.05), 1.57, lower=-1.57)
+    b.hinge("key", "plate", -Y, p(0, 0, -0.05), 1.57, -1.57)
 
 
 @kind(words="rim lock, latch lock, dead lock, spring latch, night latch, deadbolt, door lock", size=(0.8, 1.2))
@@ -94,7 +94,7 @@ def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
     b.cut("case", slab(w - 0.03, (-0.1, 0.14), (0.02, 0.12)), slab(w - 0.01, (0.02, 0.21), (0.14, 0.27)))
     for k, z in enumerate(spread(number, 0.02, 0.12)):
         b.part(f"louver_{k}", slab(w - 0.032, (-0.005, 0.02), (z - 0.002, z + 0.002)), look="grey")
-        b.hinge(f"louver_{k}", "case", X, (0, 0.008, z), 0.35, lower=-0.35)
+        b.hinge(f"louver_{k}", "case", X, (0, 0.008, z), 0.35, -0.35)
         if k:
             b.follow(f"louver_{k}", "louver_0", 1)
 
@@ -108,7 +108,7 @@ def litter_box(b: ObjectBuilder, width: float) -> None:
     b.cut("lid", slab(0.06, 0.1, (0.42, 0.445)))
     b.hinge("lid", "box", -X, (0, 0.25, 0.401), 1.5)
     b.part("flap", slab(0.118, (-0.2485, -0.2455), (0.122, 0.335)), look="glass")
-    b.hinge("flap", "box", X, (0, -0.247, 0.335), 0.9, lower=-0.9)
+    b.hinge("flap", "box", X, (0, -0.247, 0.335), 0.9, -0.9)
 
 
 @kind(words="rodent cage, hamster cage with a wheel, mouse cage", width=(0.4, 0.7))
@@ -118,20 +118,20 @@ def hamster_cage(b: ObjectBuilder, width: float) -> None:
         "cage",
         slab(w, 0.18, (0, 0.08)),
         slab(w, 0.18, (0.38, 0.39)),
-        [b.cylinder(0.003, (x, y, 0.07), (x, y, 0.385)) for x in spread(9, -w, w) for y in (-0.175, 0.175)],
-        [b.cylinder(0.003, (x, y, 0.07), (x, y, 0.385)) for x in (-w + 0.005, w - 0.005) for y in (-0.1, 0, 0.1)],
+        [b.cylinder(0.003, x, y, (0.07, 0.385)) for x in spread(9, -w, w) for y in (-0.175, 0.175)],
+        [b.cylinder(0.003, x, y, (0.07, 0.385)) for x in (-w + 0.005, w - 0.005) for y in (-0.1, 0, 0.1)],
         [box((0.3 * w - 0.01, 0.075, 0.07), (0.3 * w + 0.01, 0.09, 0.22)) for k in (1,)],
-        b.cylinder(0.006, (0.3 * w, 0.08, 0.2), (0.3 * w, -0.05, 0.2)),
+        b.cylinder(0.006, 0.3 * w, (0.08, -0.05), 0.2),
         look="blue",
     )
     b.cut("cage", slab(w - 0.006, 0.174, (0.008, 0.079)), box((-0.8 * w, -0.2, 0.09), (-0.3 * w, -0.1, 0.3)))
     b.part(
         "wheel",
-        b.tube(0.1, 0.092, (0.3 * w, 0.06, 0.2), (0.3 * w, -0.04, 0.2)),
-        b.cylinder(0.1, (0.3 * w, 0.066, 0.2), (0.3 * w, 0.058, 0.2)),
+        b.tube(0.1, 0.092, 0.3 * w, (0.06, -0.04), 0.2),
+        b.cylinder(0.1, 0.3 * w, (0.066, 0.058), 0.2),
         look="yellow",
     )
-    b.cut("wheel", b.cylinder(0.0075, (0.3 * w, -1, 0.2), (0.3 * w, 1, 0.2)))
+    b.cut("wheel", b.cylinder(0.0075, 0.3 * w, (-1, 1), 0.2))
     b.spin("wheel", "cage", Y, (0.3 * w, 0, 0.2))
     b.part("door", box((-0.82 * w, -0.185, 0.085), (-0.28 * w, -0.1805, 0.305)), look="metal")
     b.hinge("door", "cage", X, (0, -0.185, 0.085), 1.5)
@@ -259,12 +259,12 @@ def passenger_seat(b: ObjectBuilder, size: float) -> None:
         look="grey",
     )
     b.part("back", p.slab(0.26, (0.255, 0.37), (0.35, 1)), look="blue")
-    b.cut("back", [p.cylinder(0.009, (s * 0.08, 0.31, 0.8), (s * 0.08, 0.31, 2)) for s in (-1, 1)])
-    b.hinge("back", "seat", -X, p(0, 0.31, 0.36), 0.4, lower=0)
+    b.cut("back", [p.cylinder(0.009, s * 0.08, 0.31, (0.8, 2)) for s in (-1, 1)])
+    b.hinge("back", "seat", -X, p(0, 0.31, 0.36), 0.4, 0)
     b.part(
         "headrest",
         p.slab(0.14, (0.26, 0.36), (1.03, 1.22)),
-        [p.cylinder(0.007, (s * 0.08, 0.31, 0.83), (s * 0.08, 0.31, 1.04)) for s in (-1, 1)],
+        [p.cylinder(0.007, s * 0.08, 0.31, (0.83, 1.04)) for s in (-1, 1)],
         look="blue",
     )
     b.slide("headrest", "back", Z, 0.1, lower=-0.02)
@@ -284,7 +284,7 @@ def parking_bollard(b: ObjectBuilder, height: float) -> None:
         slab(0.0501, 0.0401, (0.7 * height, 0.8 * height)),
         look="yellow steel",
     )
-    b.hinge("post", "base", X, (0, 0.0, 0.095), 0.7, lower=-0.7)
+    b.hinge("post", "base", X, (0, 0.0, 0.095), 0.7, -0.7)
 
 
 @kind(words="cash machine, cash dispenser", width=(0.5, 0.8))
@@ -334,11 +334,11 @@ def shipping_container(b: ObjectBuilder) -> None:
             [p.box((s * 0.3 - 0.06, -0.13, z - 0.05), (s * 0.3 + 0.06, -0.05, z + 0.05)) for z in (0.4, 2.1)],
             look="dark blue steel",
         )
-        b.cut(f"door_{k}", p.cylinder(0.0225, (s * 0.3, -0.1, -1), (s * 0.3, -0.1, 3)))
+        b.cut(f"door_{k}", p.cylinder(0.0225, s * 0.3, -0.1, (-1, 3)))
         b.hinge(f"door_{k}", "container", s * Z, p(s * 1.2, -0.06, 0), 2.0)
         b.part(
             f"bar_{k}",
-            p.cylinder(0.02, (s * 0.3, -0.1, 0.03), (s * 0.3, -0.1, 2.47)),
+            p.cylinder(0.02, s * 0.3, -0.1, (0.03, 2.47)),
             p.box((s * 0.3, -0.12, 1.1), (s * 0.6, -0.09, 1.16)),
             look="steel",
         )
@@ -350,20 +350,20 @@ def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "body",
-        b.tube(1.25 * r, r, (0, -0.4 * r, 0), (0, 0.4 * r, 0)),
-        [b.tube(1.5 * r, r, (0, y - 0.06 * r, 0), (0, y + 0.06 * r, 0)) for y in (-0.4 * r, 0.4 * r)],
+        b.tube(1.25 * r, r, 0, (-0.4 * r, 0.4 * r), 0),
+        [b.tube(1.5 * r, r, 0, (y - 0.06 * r, y + 0.06 * r), 0) for y in (-0.4 * r, 0.4 * r)],
         b.cylinder(0.2 * r, 1.2 * r, 1.6 * r),
         look="blue steel",
     )
     b.bore("body", b.cylinder(0.115 * r, -1.15 * r, 3 * r))
     b.part(
         "disc",
-        b.cylinder(0.96 * r, (0, -0.05 * r, 0), (0, 0.05 * r, 0)),
+        b.cylinder(0.96 * r, 0, (-0.05 * r, 0.05 * r), 0),
         b.cylinder(0.1 * r, -1.1 * r, 1.9 * r),
         beam(0.2 * r, 0.12 * r, (0, 0, 1.8 * r), (1.8 * r, 0, 1.8 * r)),
         look="steel",
     )
-    b.hinge("disc", "body", Z, (0, 0, 0), 1.5, lower=-1.5)
+    b.hinge("disc", "body", Z, (0, 0, 0), 1.5, -1.5)
 
 
 @kind(walls=100, words="hydrant", size=(0.9, 1.1))
@@ -374,7 +374,7 @@ def fire_hydrant(b: ObjectBuilder, size: float) -> None:
         p.cylinder(0.14, 0, 0.05),
         p.cylinder(0.1, 0.04, 0.6),
         p.ball(0.1, (0, 0, 0.6)),
-        [p.cylinder(0.06, (s * 0.05, 0, 0.45), (s * 0.15, 0, 0.45)) for s in (-1, 1)],
+        [p.cylinder(0.06, (s * 0.05, s * 0.15), 0, 0.45) for s in (-1, 1)],
         p.cylinder(0.025, 0.68, 0.72),
         look="red steel",
     )
@@ -382,7 +382,7 @@ def fire_hydrant(b: ObjectBuilder, size: float) -> None:
     for k, s in enumerate((-1, 1)):
         b.part(
             f"cap_{k}",
-            p.cylinder(0.07, (s * 0.151, 0, 0.45), (s * 0.185, 0, 0.45)),
+            p.cylinder(0.07, (s * 0.151, s * 0.185), 0, 0.45),
             p.slab((s * 0.18, s * 0.215), 0.015, (0.435, 0.465)),
             look="yellow steel",
         )
@@ -391,10 +391,7 @@ def fire_hydrant(b: ObjectBuilder, size: float) -> None:
     b.spin("valve", "body", Z, p(0, 0, 0))
 
 
-@kind(
-    words=("rotary clothes line, rotary washing line, rotary airer, rotary dryer, hills hoist"),
-    height=(1.5, 2.0),
-)
+@kind(words=("rotary clothes line, rotary washing line, rotary airer, rotary dryer, hills hoist"), height=(1.5, 2.0))
 def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
     b.part("post", b.cylinder(0.15, 0, 0.03), b.cylinder(0.022, 0.02, height), look="steel")
     b.part(
@@ -434,18 +431,14 @@ def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
         slab(w, w, (0, 0.03)),
         slab(w, w, (top, top + 0.015)),
         [
-            b.cylinder(0.003, (x, s * (w - 0.005), 0.02), (x, s * (w - 0.005), top + 0.01))
+            b.cylinder(0.003, x, s * (w - 0.005), (0.02, top + 0.01))
             for x in spread(9, -w, w)
             for s in (-1, 1)
             if s > 0 or abs(x) > half
         ],
+        [b.cylinder(0.003, s * (w - 0.005), y, (0.02, top + 0.01)) for y in spread(9, -w, w) for s in (-1, 1)],
         [
-            b.cylinder(0.003, (s * (w - 0.005), y, 0.02), (s * (w - 0.005), y, top + 0.01))
-            for y in spread(9, -w, w)
-            for s in (-1, 1)
-        ],
-        [
-            b.cylinder(0.003, (x, 0.005 - w, a), (x, 0.005 - w, b_))
+            b.cylinder(0.003, x, 0.005 - w, (a, b_))
             for x in spread(9, -w, w)
             if abs(x) <= half
             for a, b_ in ((0.02, low), (high, top + 0.01))
@@ -460,9 +453,9 @@ def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
     arm = 0.35 * w
     b.part(
         "swing",
-        [b.cylinder(0.003, (s * arm, 0, z), (s * arm, 0, 0.45 * height)) for s in (-1, 1)],
-        b.cylinder(0.006, (-1.2 * arm, 0, 0.45 * height), (1.2 * arm, 0, 0.45 * height)),
-        b.cylinder(0.004, (-arm, 0, z), (arm, 0, z)),
+        [b.cylinder(0.003, s * arm, 0, (z, 0.45 * height)) for s in (-1, 1)],
+        b.cylinder(0.006, (-1.2 * arm, 1.2 * arm), 0, 0.45 * height),
+        b.cylinder(0.004, (-arm, arm), 0, z),
         look="wood",
     )
-    b.hinge("swing", "cage", X, (0, 0, z), 0.5, lower=-0.5, ajar=False)
+    b.hinge("swing", "cage", X, (0, 0, z), 0.5, -0.5, ajar=False)

@@ -84,11 +84,7 @@ def kettle(b: ObjectBuilder, radius: float, height: float) -> None:
         )
 
 
-@kind(
-    words="jar, preserving jar, storage jar, cookie jar, candy jar",
-    radius=(0.03, 0.07),
-    height=(0.08, 0.2),
-)
+@kind(words="jar, preserving jar, storage jar, cookie jar, candy jar", radius=(0.03, 0.07), height=(0.08, 0.2))
 def jar_with_clip(b: ObjectBuilder, radius: float, height: float) -> None:
     """A glass jar with a hinged lid, or one that is screwed."""
     b.part("jar", b.cylinder(radius, 0, height), look="glass")
@@ -120,14 +116,9 @@ def jar_with_clip(b: ObjectBuilder, radius: float, height: float) -> None:
 )
 def shower_mixer(b: ObjectBuilder, width: float, radius: float) -> None:
     """A bar on a wall with a knob at either end and a hand shower on a rail."""
-    b.part(
-        "bar",
-        slab(width, (0.04, 0.06), (-0.1, 1)),
-        b.cylinder(radius, (-width / 2, 0, 0), (width / 2, 0, 0)),
-        look="steel",
-    )
+    b.part("bar", slab(width, (0.04, 0.06), (-0.1, 1)), b.cylinder(radius, (-width / 2, width / 2), 0, 0), look="steel")
     for s in (-1, 1):
-        b.part("bar", b.cylinder(0.7 * radius, (s * width / 3, 0, 0), (s * width / 3, 0.05, 0)))
+        b.part("bar", b.cylinder(0.7 * radius, s * width / 3, (0, 0.05), 0))
         knob(
             b,
             f"knob_{int(s + 1)}",
@@ -139,14 +130,12 @@ def shower_mixer(b: ObjectBuilder, width: float, radius: float) -> None:
             reach=b.pick(None, 1.6),
         )
     b.part(
-        "bar",
-        b.cylinder(0.01, (0, -0.02, 0.2), (0, -0.02, 0.9)),
-        [b.cylinder(0.008, (0, -0.02, z), (0, 0.05, z)) for z in (0.22, 0.88)],
+        "bar", b.cylinder(0.01, 0, -0.02, (0.2, 0.9)), [b.cylinder(0.008, 0, (-0.02, 0.05), z) for z in (0.22, 0.88)]
     )
     g = b.gap(0.01)
     z = b.draw(0.4, 0.7)
     b.part("holder", block((0, -0.02, z), (0.05, 0.05, 0.06)), b.cone(0.02, 0.04, (0, -0.05, z), (0, -0.1, z + 0.03)))
-    b.bore("holder", b.cylinder(0.01 + 1.5 * g, (0, -0.02, 0), (0, -0.02, 1)))
+    b.bore("holder", b.cylinder(0.01 + 1.5 * g, 0, -0.02, (0, 1)))
     b.slide("holder", "bar", Z, 0.8 - z, lower=0.28 - z, ajar=False)
 
 
@@ -170,11 +159,11 @@ def towel_rail(b: ObjectBuilder, height: float, number: int) -> None:
         b.part(
             f"arm_{k}",
             b.cylinder(0.02, z - 0.4 * step, z + 0.4 * step),
-            b.cylinder(0.008, (0, 0, z), (0, -b.draw(0.25, 0.5), z)),
+            b.cylinder(0.008, 0, (0, -b.draw(0.25, 0.5)), z),
             look="steel",
         )
         b.bore(f"arm_{k}", b.cylinder(0.012 + 1.5 * g + 0.0005, 0, height))
-        b.hinge(f"arm_{k}", "wall_mount", Z, (0, 0, z), 1.2, lower=-1.2)
+        b.hinge(f"arm_{k}", "wall_mount", Z, (0, 0, z), 1.2, -1.2)
 
 
 @kind(words="iron board, ironing table", width=(1.0, 1.4), depth=(0.3, 0.45), height=(0.75, 0.95))
@@ -193,13 +182,10 @@ def ironing_board(b: ObjectBuilder, width: float, depth: float, height: float) -
         ]
         b.part(name, [beam(0.02, 0.02, *((s * width * x, v, z) for x, v, z in bar)) for bar in bars])
     if b.style.barrels:
-        b.part(
-            "legs",
-            b.cylinder(0.006, (0.2 * width, -0.3 * depth, height - 0.025), (0.2 * width, 0.3 * depth, height - 0.025)),
-        )
+        b.part("legs", b.cylinder(0.006, 0.2 * width, (-0.3 * depth, 0.3 * depth), height - 0.025))
     for s, name in ((1, "legs"), (-1, "rear_legs")):
         pin = (s * 0.2 * width, 0, height - 0.025)
-        b.hinge(name, "board", s * Y, pin, 0.4, lower=-0.1, ajar=False)
+        b.hinge(name, "board", s * Y, pin, 0.4, -0.1, ajar=False)
     b.follow("rear_legs", "legs")
 
 
@@ -211,10 +197,10 @@ def bread_bin(b: ObjectBuilder, width: float, radius: float) -> None:
         b.part("bin", slab((s * width / 2, s * (width / 2 - 0.015)), radius, (0, radius)))
     g = b.gap(0.05) + 0.0005
     half = width / 2 - 0.015 - g
-    b.part("lid", b.cylinder(0.98 * radius, (-half, -0.2 * radius, 0.05 + g), (half, -0.2 * radius, 0.05 + g)))
+    b.part("lid", b.cylinder(0.98 * radius, (-half, half), -0.2 * radius, 0.05 + g))
     b.cut(
         "lid",
-        b.cylinder(0.9 * radius, (-half + 0.01, -0.2 * radius, 0.05 + g), (half - 0.01, -0.2 * radius, 0.05 + g)),
+        b.cylinder(0.9 * radius, (-half + 0.01, half - 0.01), -0.2 * radius, 0.05 + g),
         slab(1, (-0.2 * radius, 1), (-1, 0.05 + 0.3 * radius)),
         slab(1, 1, (-1, 0.022 + g)),
     )
@@ -261,7 +247,7 @@ def food_processor(b: ObjectBuilder, radius: float) -> None:
     b.part(
         "lid",
         b.cylinder(1.03 * radius, 0.27 + g, 0.285 + g),
-        b.cylinder(0.3 * radius, (0, 0.4 * radius, 0.27 + g), (0, 0.4 * radius, 0.35)),
+        b.cylinder(0.3 * radius, 0, 0.4 * radius, (0.27 + g, 0.35)),
     )
     b.slide("lid", "bowl", Z, 0.1)
     knob(b, "dial", "base", (0.05, -0.1, 0.07), 0.025, -Y, high=0.02, reach=4.0)
@@ -269,18 +255,14 @@ def food_processor(b: ObjectBuilder, radius: float) -> None:
         button(b, f"button_{k}", "base", (-0.05, -0.1, z), (0.03, 0.02), 0.006, -Y, is_round=b.maybe())
 
 
-@kind(
-    words="tea urn, coffee urn, samovar, drink dispenser, beverage dispenser",
-    radius=(0.12, 0.18),
-    height=(0.3, 0.5),
-)
+@kind(words="tea urn, coffee urn, samovar, drink dispenser, beverage dispenser", radius=(0.12, 0.18), height=(0.3, 0.5))
 def urn(b: ObjectBuilder, radius: float, height: float) -> None:
     """An urn with a spigot."""
     b.part(
         "urn",
         b.cylinder(radius, 0.05, height),
         b.cylinder(0.7 * radius, 0, 0.06),
-        b.cylinder(0.012, (0, -0.8 * radius, 0.1), (0, -radius - 0.06, 0.1)),
+        b.cylinder(0.012, 0, (-0.8 * radius, -radius - 0.06), 0.1),
         look="steel",
     )
     g = b.gap(radius)
@@ -289,7 +271,7 @@ def urn(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part(
         "spigot",
         slab(0.006, (-radius - 0.05, -radius - 0.03), (0.112 + g, 0.16)),
-        b.cylinder(0.012, (0, -radius - 0.04, 0.112 + g), (0, -radius - 0.04, 0.12)),
+        b.cylinder(0.012, 0, -radius - 0.04, (0.112 + g, 0.12)),
     )
     b.hinge("spigot", "urn", Z, (0, -radius - 0.04, 0.112), 1.57)
 
@@ -304,7 +286,7 @@ def window_blind(b: ObjectBuilder, width: float, number: int) -> None:
     g = b.gap(0.02) + 0.0003
     for k, z in enumerate(spread(number, 0, h - 0.01)):
         b.part(f"slat_{k}", slab(width / 2 - g, 0.025, (z - 0.001, z + 0.001)), look="metal")
-        b.hinge(f"slat_{k}", "rail", X, (0, 0, z), 0.9, lower=-0.9, ajar=False)
+        b.hinge(f"slat_{k}", "rail", X, (0, 0, z), 0.9, -0.9, ajar=False)
         if k:
             b.follow(f"slat_{k}", "slat_0")
 
@@ -315,7 +297,7 @@ def tower_fan(b: ObjectBuilder, height: float, radius: float) -> None:
     b.part("base", b.cylinder(1.8 * radius, 0, 0.03))
     g = b.gap(radius)
     b.part("column", b.cylinder(radius, 0.03 + g, height))
-    b.hinge("column", "base", Z, (0, 0, 0.03), 0.7, lower=-0.7, ajar=False)
+    b.hinge("column", "base", Z, (0, 0, 0.03), 0.7, -0.7, ajar=False)
     for k, x in enumerate(spread(b.count(1, 3), -0.7 * radius, 0.7 * radius)):
         button(b, f"button_{k}", "column", (x, -0.3 * radius, height), (0.015, 0.015), 0.005, Z, is_round=True)
     knob(
@@ -339,7 +321,7 @@ def wood_stove(b: ObjectBuilder, width: float, height: float) -> None:
     """A wood stove with a glazed door, an ash drawer and a damper."""
     case(b, "stove", (-width / 2, -0.2, 0.1), (width / 2, 0.2, height), material="steel")
     legs(b, "stove", (-width / 2, -0.2, 0), (width / 2, 0.2, 0.105), 0.04)
-    b.part("stove", b.cylinder(0.07, (0, 0.05, height - 0.01), (0, 0.05, height + 0.4)))
+    b.part("stove", b.cylinder(0.07, 0, 0.05, (height - 0.01, height + 0.4)))
     b.bore("stove", slab(0.35 * width, (-0.3, 0.1), (0.35 * height, 0.85 * height)))
     leaf(
         b,

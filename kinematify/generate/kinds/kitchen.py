@@ -118,17 +118,17 @@ def rotary_grater(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
         "body",
-        p.tube(0.03, 0.026, (0, -0.03, 0.1), (0, 0.04, 0.1)),
+        p.tube(0.03, 0.026, 0, (-0.03, 0.04), 0.1),
         p.slab(0.015, (0.02, 0.04), (0.127, 0.26)),
         p.slab(0.02, 0.02, (0.128, 0.15)),
         look="white",
     )
     b.part(
         "drum",
-        p.cylinder(0.024, (0, -0.04, 0.1), (0, 0.03, 0.1)),
-        p.cylinder(0.008, (0, -0.08, 0.1), (0, -0.03, 0.1)),
+        p.cylinder(0.024, 0, (-0.04, 0.03), 0.1),
+        p.cylinder(0.008, 0, (-0.08, -0.03), 0.1),
         p.beam(0.014, 0.008, (0, -0.075, 0.1), (0.08, -0.075, 0.1), Y),
-        p.cylinder(0.008, (0.075, -0.12, 0.1), (0.075, -0.07, 0.1)),
+        p.cylinder(0.008, 0.075, (-0.12, -0.07), 0.1),
         look="steel",
     )
     b.spin("drum", "body", -Y, p(0, 0, 0.1))
@@ -138,23 +138,23 @@ def rotary_grater(b: ObjectBuilder, size: float) -> None:
 def apple_peeler(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part("base", p.slab(0.16, 0.04, (0, 0.015)), p.slab((0.05, 0.08), 0.02, (0.01, 0.1)), look="red steel")
-    b.bore("base", p.cylinder(0.0085, (0.04, 0, 0.08), (0.1, 0, 0.08)))
+    b.bore("base", p.cylinder(0.0085, (0.04, 0.1), 0, 0.08))
     b.part(
         "shaft",
-        p.cylinder(0.0075, (-0.06, 0, 0.08), (0.15, 0, 0.08)),
+        p.cylinder(0.0075, (-0.06, 0.15), 0, 0.08),
         p.beam(0.012, 0.01, (0.145, 0, 0.08), (0.145, 0, 0.15), X),
-        p.cylinder(0.01, (0.14, 0, 0.145), (0.2, 0, 0.145)),
+        p.cylinder(0.01, (0.14, 0.2), 0, 0.145),
         look="steel",
     )
     b.spin("shaft", "base", X, p(0, 0, 0.08))
     b.part(
         "arm",
-        p.cylinder(0.01, (-0.1, 0.02, 0.016), (-0.1, 0.02, 0.03)),
+        p.cylinder(0.01, -0.1, 0.02, (0.016, 0.03)),
         p.beam(0.01, 0.012, (-0.1, 0.02, 0.03), (-0.1, 0.02, 0.13), X),
         p.beam(0.008, 0.02, (-0.1, 0.02, 0.125), (-0.06, 0.05, 0.125)),
         look="steel",
     )
-    b.hinge("arm", "base", Z, p(-0.1, 0.02, 0.02), 0.8, lower=0)
+    b.hinge("arm", "base", Z, p(-0.1, 0.02, 0.02), 0.8, 0)
 
 
 @kind(words="tea pot, coffee pot", radius=(0.06, 0.1))
@@ -214,7 +214,7 @@ def egg_slicer(b: ObjectBuilder, size: float) -> None:
     b.part("frame", p.slab(0.045, (-0.06, 0.075), (0.025, 0.031)), look="steel")
     b.cut("frame", p.slab(0.037, 0.05, (0, 0.1)))
     for x in spread(7, -0.037 * size, 0.037 * size):
-        b.part("frame", b.cylinder(0.0008, (x, -0.055 * size, 0.028 * size), (x, 0.055 * size, 0.028 * size)))
+        b.part("frame", b.cylinder(0.0008, x, (-0.055 * size, 0.055 * size), 0.028 * size))
     b.hinge("frame", "base", -X, p(0, 0.075, 0.025), 1.6)
 
 
@@ -225,7 +225,7 @@ def spice_rack(b: ObjectBuilder, number: int) -> None:
     b.cut("rack", b.cylinder(0.0095, 0, 1))
     for a in [2 * pi * k / number for k in range(number)]:
         x, y = 0.07 * cos(a), 0.07 * sin(a)
-        jars = [b.cylinder(0.022, (x, y, z + 0.01), (x, y, z + 0.1)) for z in (0.03, 0.16)]
+        jars = [b.cylinder(0.022, x, y, (z + 0.01, z + 0.1)) for z in (0.03, 0.16)]
         b.part("rack", b.painted(*jars, material="glass", color="green"))
     b.spin("rack", "base", Z, (0, 0, 0))
 
@@ -277,7 +277,7 @@ def popcorn_machine(b: ObjectBuilder, width: float) -> None:
     b.part(
         "kettle",
         b.cylinder(0.1, 0.45, 0.6),
-        [b.cylinder(0.006, (x * 0.095, 0, 0.57), (x * 0.128, 0, 0.57)) for x in (-1, 1)],
+        [b.cylinder(0.006, (x * 0.095, x * 0.128), 0, 0.57) for x in (-1, 1)],
         look="steel",
     )
     b.cut("kettle", b.cylinder(0.094, 0.46, 1))
@@ -326,16 +326,16 @@ def beer_tap(b: ObjectBuilder, height: float, number: int) -> None:
     for k, x in enumerate(spread(number, -width / 2, width / 2)):
         b.part(
             "tower",
-            b.cylinder(0.012, (x, -0.03, 0.8 * height), (x, -0.1, 0.8 * height)),
+            b.cylinder(0.012, x, (-0.03, -0.1), 0.8 * height),
             b.cylinder(0.008, (x, -0.09, 0.8 * height), (x, -0.1, 0.62 * height)),
         )
         b.part(
             f"handle_{k}",
             beam(0.012, 0.012, (x, -0.085, 0.8 * height + 0.022), (x, -0.085, 0.8 * height + 0.075), Y),
-            b.rod(0.016, (x, -0.085, 0.8 * height + 0.07), (x, -0.085, 0.8 * height + 0.16)),
+            b.rod(0.016, x, -0.085, (0.8 * height + 0.07, 0.8 * height + 0.16)),
             look="black wood",
         )
-        b.hinge(f"handle_{k}", "tower", X, (x, -0.085, 0.8 * height + 0.022), 0.6, lower=0)
+        b.hinge(f"handle_{k}", "tower", X, (x, -0.085, 0.8 * height + 0.022), 0.6, 0)
 
 
 @kind(words="shaker, protein shaker", radius=(0.035, 0.05), height=(0.15, 0.22))
@@ -366,7 +366,7 @@ def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) ->
     b.part(
         "body",
         slab(w, depth / 2, (0.015, height)),
-        [b.cylinder(0.012, (x, y, 0), (x, y, 0.016)) for x in (-0.8 * w, 0.8 * w) for y in (-0.4 * depth, 0.4 * depth)],
+        [b.cylinder(0.012, x, y, (0, 0.016)) for x in (-0.8 * w, 0.8 * w) for y in (-0.4 * depth, 0.4 * depth)],
         look="steel",
     )
     b.cut(
@@ -377,7 +377,7 @@ def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) ->
     b.part(
         "door",
         box((-w + 0.008, -depth / 2 - 0.016, 0.022), (0.57 * w, -depth / 2 - 0.001, height - 0.012)),
-        b.cylinder(0.006, (-0.7 * w, -depth / 2 - 0.035, height - 0.03), (0.3 * w, -depth / 2 - 0.035, height - 0.03)),
+        b.cylinder(0.006, (-0.7 * w, 0.3 * w), -depth / 2 - 0.035, height - 0.03),
         [
             box((x, -depth / 2 - 0.035, height - 0.035), (x + 0.01, -depth / 2 - 0.014, height - 0.025))
             for x in (-0.7 * w, 0.26 * w)
@@ -389,10 +389,7 @@ def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) ->
         knob(b, f"knob_{k}", "body", (0.78 * w, -depth / 2, z), 0.016, -Y, high=0.016, reach=4.7)
 
 
-@kind(
-    words="hob, gas hob, hot plate, stove top, electric hob",
-    number=whole(1, 6, words="knob, burner, dial"),
-)
+@kind(words="hob, gas hob, hot plate, stove top, electric hob", number=whole(1, 6, words="knob, burner, dial"))
 def cooktop(b: ObjectBuilder, number: int) -> None:
     rows = 1 if number < 3 else 2
     columns = (number + rows - 1) // rows
@@ -405,7 +402,7 @@ def cooktop(b: ObjectBuilder, number: int) -> None:
         y = -depth / 2 + 0.22 + 0.28 * (k // columns)
         b.part(
             "plate",
-            b.cylinder(0.05, (x, y, 0.045), (x, y, 0.065)),
+            b.cylinder(0.05, x, y, (0.045, 0.065)),
             [box((x - 0.11, y + s - 0.005, 0.045), (x + 0.11, y + s + 0.005, 0.08)) for s in (-0.06, 0.06)],
         )
     for k, x in enumerate(spread(number, -width / 2 + 0.02, width / 2 - 0.02)):
@@ -460,14 +457,14 @@ def tortilla_press(b: ObjectBuilder, radius: float) -> None:
         look="metal",
     )
     b.hinge("plate", "base", -X, (0, radius + 0.035, 0.027), 1.5)
-    b.bore("base", b.cylinder(0.0055, (-0.1, -radius - 0.025, 0.02), (0.1, -radius - 0.025, 0.02)))
+    b.bore("base", b.cylinder(0.0055, (-0.1, 0.1), -radius - 0.025, 0.02))
     b.part(
         "lever",
         beam(0.02, 0.012, (0, -radius - 0.025, 0.022), (0, -radius - 0.025, 0.24), Y),
-        b.cylinder(0.004, (-0.033, -radius - 0.025, 0.02), (0.033, -radius - 0.025, 0.02)),
+        b.cylinder(0.004, (-0.033, 0.033), -radius - 0.025, 0.02),
         look="metal",
     )
-    b.hinge("lever", "base", -X, (0, -radius - 0.025, 0.02), 0.5, lower=-0.6)
+    b.hinge("lever", "base", -X, (0, -radius - 0.025, 0.02), 0.5, -0.6)
 
 
 @kind(words="roasting spit, kebab grill, barbecue spit", width=(0.6, 1.2))
@@ -480,13 +477,13 @@ def rotisserie(b: ObjectBuilder, width: float) -> None:
         look="black steel",
     )
     b.cut("frame", slab(w - 0.02, 0.18, (0.02, 0.2)))
-    b.bore("frame", [b.cylinder(0.0075, (s * w * 0.8, 0, 0.34), (s * w * 1.1, 0, 0.34)) for s in (-1, 1)])
+    b.bore("frame", [b.cylinder(0.0075, (s * w * 0.8, s * w * 1.1), 0, 0.34) for s in (-1, 1)])
     b.part(
         "spit",
-        b.cylinder(0.006, (-w - 0.03, 0, 0.34), (w + 0.06, 0, 0.34)),
-        b.rod(0.08, (-0.15, 0, 0.34), (0.15, 0, 0.34)),
+        b.cylinder(0.006, (-w - 0.03, w + 0.06), 0, 0.34),
+        b.rod(0.08, (-0.15, 0.15), 0, 0.34),
         beam(0.012, 0.01, (w + 0.055, 0, 0.34), (w + 0.055, 0, 0.24), X),
-        b.cylinder(0.01, (w + 0.05, 0, 0.25), (w + 0.12, 0, 0.25)),
+        b.cylinder(0.01, (w + 0.05, w + 0.12), 0, 0.25),
         look="steel",
     )
     b.spin("spit", "frame", X, (0, 0, 0.34))
@@ -510,7 +507,7 @@ def can_crusher(b: ObjectBuilder, height: float) -> None:
     )
     b.slide("ram", "frame", -Z, 0.5 * height)
     b.part("lever", beam(0.03, 0.015, (0, -0.025, height + 0.015), (0, -0.33, height + 0.12)), look="steel")
-    b.hinge("lever", "frame", X, (0, -0.025, height + 0.015), 0.35, lower=-0.9)
+    b.hinge("lever", "frame", X, (0, -0.025, height + 0.015), 0.35, -0.9)
 
 
 @kind(words="tea box, sewing box with tray", width=(0.2, 0.35), depth=(0.15, 0.25))
@@ -550,7 +547,7 @@ def shower_cabin(b: ObjectBuilder, width: float, height: float) -> None:
         slab((w - 0.02, w), w, (0.1, height)),
         [slab(w, (-w, -w + 0.05), (z, z + 0.03)) for z in (0.1, height - 0.03)],
         slab((-w, -w + 0.03), w, (0.1, height)),
-        b.cylinder(0.012, (0, w - 0.05, height - 0.1), (0, w - 0.01, height - 0.1)),
+        b.cylinder(0.012, 0, (w - 0.05, w - 0.01), height - 0.1),
         b.cone(0.08, 0.02, (0, w - 0.12, height - 0.16), (0, w - 0.06, height - 0.09)),
         look="white",
     )
@@ -583,7 +580,7 @@ def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float
         leaf(b, "door", "tub", *face, hinge=-X, out=-Y, reach=1.6, material="plastic")
     b.part(
         "tub",
-        b.cylinder(0.02, (length - 0.03, width / 2, height), (length - 0.03, width / 2, height + 0.12)),
+        b.cylinder(0.02, length - 0.03, width / 2, (height, height + 0.12)),
         b.cylinder(0.014, (length - 0.03, width / 2, height + 0.11), (length - 0.18, width / 2, height + 0.09)),
     )
     for k, s in enumerate((-1, 1)):
@@ -594,53 +591,45 @@ def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float
 
 @kind(words="sink, wash basin, kitchen sink, bathroom sink, hand basin", width=(0.45, 0.8), depth=(0.38, 0.5))
 def washbasin(b: ObjectBuilder, width: float, depth: float) -> None:
-    b.part(
-        "basin",
-        slab(width / 2, depth / 2, (0.75, 0.9)),
-        b.cylinder(0.08, (0, 0.05, 0), (0, 0.05, 0.76)),
-        look="white ceramic",
-    )
+    b.part("basin", slab(width / 2, depth / 2, (0.75, 0.9)), b.cylinder(0.08, 0, 0.05, (0, 0.76)), look="white ceramic")
     b.cut("basin", slab(0.42 * width, (-0.42 * depth, 0.25 * depth), (0.78, 1)))
     b.part(
-        "plug",
-        b.cylinder(0.022, (0, -0.05, 0.782), (0, -0.05, 0.79)),
-        b.cylinder(0.004, (0, -0.05, 0.788), (0, -0.05, 0.81)),
-        look="chrome",
+        "plug", b.cylinder(0.022, 0, -0.05, (0.782, 0.79)), b.cylinder(0.004, 0, -0.05, (0.788, 0.81)), look="chrome"
     )
     b.slide("plug", "basin", Z, 0.05)
     b.part(
         "spout",
-        b.cylinder(0.02, (0, 0.38 * depth, 0.902), (0, 0.38 * depth, 1.02)),
+        b.cylinder(0.02, 0, 0.38 * depth, (0.902, 1.02)),
         b.cylinder(0.012, (0, 0.38 * depth, 1), (0, 0 * depth, 1.02)),
-        b.cylinder(0.01, (0, 0.01, 1.025), (0, 0.01, 0.99)),
+        b.cylinder(0.01, 0, 0.01, (1.025, 0.99)),
         look="chrome",
     )
-    b.hinge("spout", "basin", Z, (0, 0.38 * depth, 0.9), 1.0, lower=-1.0)
+    b.hinge("spout", "basin", Z, (0, 0.38 * depth, 0.9), 1.0, -1.0)
     b.part(
         "lever",
-        b.cylinder(0.018, (0, 0.38 * depth, 1.022), (0, 0.38 * depth, 1.04)),
+        b.cylinder(0.018, 0, 0.38 * depth, (1.022, 1.04)),
         beam(0.012, 0.008, (0, 0.38 * depth, 1.035), (0, 0.38 * depth - 0.1, 1.06)),
         look="chrome",
     )
-    b.hinge("lever", "spout", Z, (0, 0.38 * depth, 1.02), 0.7, lower=-0.7)
+    b.hinge("lever", "spout", Z, (0, 0.38 * depth, 1.02), 0.7, -0.7)
 
 
 @kind(height=(0.38, 0.42))
 def bidet(b: ObjectBuilder, height: float) -> None:
     b.part("bowl", b.cone(0.12, 0.18, 0, height), slab(0.18, (0, 0.32), (height - 0.14, height)), look="white ceramic")
-    b.cut("bowl", b.cone(0.06, 0.15, (0, -0.02, height - 0.15), (0, -0.02, height + 0.001)))
+    b.cut("bowl", b.cone(0.06, 0.15, 0, -0.02, (height - 0.15, height + 0.001)))
     b.part(
         "bowl",
-        b.cylinder(0.018, (0, 0.24, height), (0, 0.24, height + 0.08)),
+        b.cylinder(0.018, 0, 0.24, (height, height + 0.08)),
         b.cylinder(0.01, (0, 0.24, height + 0.07), (0, 0.1, height + 0.05)),
     )
     b.part(
         "lever",
-        b.cylinder(0.017, (0, 0.24, height + 0.081), (0, 0.24, height + 0.1)),
+        b.cylinder(0.017, 0, 0.24, (height + 0.081, height + 0.1)),
         beam(0.012, 0.008, (0, 0.24, height + 0.095), (0, 0.33, height + 0.12)),
         look="chrome",
     )
-    b.hinge("lever", "bowl", Z, (0, 0.24, height + 0.08), 0.8, lower=-0.8)
+    b.hinge("lever", "bowl", Z, (0, 0.24, height + 0.08), 0.8, -0.8)
 
 
 @kind(walls=5, words="laundry hamper, linen bin, laundry bin", width=(0.35, 0.5), height=(0.5, 0.7))
@@ -685,10 +674,10 @@ def toilet_paper_holder(b: ObjectBuilder, size: float) -> None:
         "mount",
         p.slab(0.07, (0, 0.01), (0, 0.1)),
         [p.box((s * 0.058, -0.07, 0.02), (s * 0.066, 0.005, 0.05)) for s in (-1, 1)],
-        p.cylinder(0.008, (-0.06, -0.06, 0.035), (0.06, -0.06, 0.035)),
+        p.cylinder(0.008, (-0.06, 0.06), -0.06, 0.035),
         look="chrome",
     )
-    b.part("roll", p.tube(0.05, 0.0095, (-0.05, -0.06, 0.035), (0.05, -0.06, 0.035)), look="white cardboard")
+    b.part("roll", p.tube(0.05, 0.0095, (-0.05, 0.05), -0.06, 0.035), look="white cardboard")
     b.spin("roll", "mount", X, p(0, -0.06, 0.035))
     b.part("cover", p.slab(0.062, (-0.13, -0.002), (0.094, 0.098)), look="chrome")
     b.hinge("cover", "mount", -X, p(0, -0.002, 0.098), 1.4)
@@ -715,8 +704,8 @@ def paper_towel_dispenser(b: ObjectBuilder, width: float, height: float) -> None
 def electric_toothbrush(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part("handle", p.rod(0.014, 0.016, 0.12), p.cone(0.012, 0.004, 0.12, 0.2), look="white")
-    b.part("head", p.cylinder(0.007, (0, -0.0065, 0.195), (0, -0.016, 0.195)), look="blue")
-    b.hinge("head", "handle", -Y, p(0, 0, 0.195), 0.6, lower=-0.6)
+    b.part("head", p.cylinder(0.007, 0, (-0.0065, -0.016), 0.195), look="blue")
+    b.hinge("head", "handle", -Y, p(0, 0, 0.195), 0.6, -0.6)
     b.bore("handle", p.slab(0.006, (-0.03, -0.008), (0.08, 0.1)))
     b.part("button", p.slab(0.0055, (-0.017, -0.011), (0.0805, 0.0995)), look="grey rubber")
     b.slide("button", "handle", Y, 0.002)
@@ -749,7 +738,7 @@ def safety_razor(b: ObjectBuilder, length: float) -> None:
         [slab((s * 0.0055, s * 0.008), 0.004, (length + 0.005, length + 0.015)) for s in (-1, 1)],
         look="blue",
     )
-    b.hinge("head", "handle", X, (0, 0, length + 0.008), 0.4, lower=-0.4)
+    b.hinge("head", "handle", X, (0, 0, length + 0.008), 0.4, -0.4)
 
 
 @kind(words="support rail, toilet rail, folding support bar", length=(0.6, 0.85))
@@ -762,10 +751,10 @@ def folding_grab_bar(b: ObjectBuilder, length: float) -> None:
     )
     b.part(
         "bar",
-        b.cylinder(0.016, (0, -0.04, 0.1), (0, -length, 0.1)),
-        b.cylinder(0.016, (0, -0.04, 0.22), (0, -length, 0.22)),
-        b.cylinder(0.016, (0, -length, 0.084), (0, -length, 0.236)),
-        b.cylinder(0.016, (0, -0.04, 0.09), (0, -0.04, 0.236)),
+        b.cylinder(0.016, 0, (-0.04, -length), 0.1),
+        b.cylinder(0.016, 0, (-0.04, -length), 0.22),
+        b.cylinder(0.016, 0, -length, (0.084, 0.236)),
+        b.cylinder(0.016, 0, -0.04, (0.09, 0.236)),
         look="white steel",
     )
     b.hinge("bar", "plate", -X, (0, -0.04, 0.22), 1.5)
@@ -790,7 +779,7 @@ def hand_dryer(b: ObjectBuilder, width: float) -> None:
     button(b, "button", "body", (0, 0, 0.7 * width), (0.05, 0.05), 0.008, -Y, is_round=True)
     b.part(
         "nozzle",
-        b.cylinder(0.03, (0, 0.08, -0.001), (0, 0.08, -0.03)),
+        b.cylinder(0.03, 0, 0.08, (-0.001, -0.03)),
         b.cylinder(0.018, (0, 0.09, -0.02), (0, 0.03, -0.05)),
         look="chrome",
     )

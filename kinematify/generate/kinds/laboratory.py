@@ -103,15 +103,15 @@ def autoclave(b: ObjectBuilder, radius: float, length: float) -> None:
     z = radius + 0.25
     b.part(
         "vessel",
-        b.cylinder(radius, (0, 0, z), (0, length, z)),
+        b.cylinder(radius, 0, (0, length), z),
         [slab(0.8 * radius, (y - 0.04, y + 0.04), (0, 0.26 + 0.1 * radius)) for y in (0.2 * length, 0.8 * length)],
         box((radius - 0.02, 0, z - 0.06), (radius + 0.07, 0.03, z + 0.06)),
         look="steel",
     )
-    b.cut("vessel", b.cylinder(radius - 0.015, (0, -1, z), (0, length - 0.02, z)))
+    b.cut("vessel", b.cylinder(radius - 0.015, 0, (-1, length - 0.02), z))
     b.part(
         "door",
-        b.cylinder(radius + 0.01, (0, -0.001, z), (0, -0.03, z)),
+        b.cylinder(radius + 0.01, 0, (-0.001, -0.03), z),
         box((0, -0.03, z - 0.03), (radius + 0.07, -0.005, z + 0.03)),
         look="steel",
     )
@@ -123,7 +123,7 @@ def autoclave(b: ObjectBuilder, radius: float, length: float) -> None:
             beam(0.012, 0.01, (-0.1 * cos(a), -0.1, z - 0.1 * sin(a)), (0.1 * cos(a), -0.1, z + 0.1 * sin(a)), Y)
             for a in (0, 1.05, 2.1)
         ],
-        b.cylinder(0.014, (0, -0.031, z), (0, -0.11, z)),
+        b.cylinder(0.014, 0, (-0.031, -0.11), z),
         look="black steel",
     )
     b.spin("wheel", "door", -Y, (0, 0, z))
@@ -136,10 +136,10 @@ def rotary_evaporator(b: ObjectBuilder, size: float) -> None:
         "base",
         p.slab(0.2, 0.15, (0, 0.04)),
         p.slab((0.1, 0.18), 0.05, (0.03, 0.5)),
-        p.cylinder(0.1, (-0.08, 0, 0.03), (-0.08, 0, 0.15)),
+        p.cylinder(0.1, -0.08, 0, (0.03, 0.15)),
         look="white metal",
     )
-    b.cut("base", p.cylinder(0.094, (-0.08, 0, 0.045), (-0.08, 0, 0.3)))
+    b.cut("base", p.cylinder(0.094, -0.08, 0, (0.045, 0.3)))
     b.part(
         "lift",
         p.slab((0.075, 0.098), 0.055, (0.35, 0.45)),
@@ -151,11 +151,11 @@ def rotary_evaporator(b: ObjectBuilder, size: float) -> None:
     b.part(
         "arm",
         p.beam(0.04, 0.05, (0.045, 0, 0.405), (-0.02, 0, 0.38), Y),
-        p.cylinder(0.014, (-0.02, 0, 0.4), (-0.02, 0, 0.55)),
+        p.cylinder(0.014, -0.02, 0, (0.4, 0.55)),
         look="white",
     )
     b.cut("arm", p.cylinder(0.013, (-0.035, 0, 0.33), (0, 0, 0.41)))
-    b.hinge("arm", "lift", Y, p(0.045, 0, 0.405), 0.2, lower=-0.2)
+    b.hinge("arm", "lift", Y, p(0.045, 0, 0.405), 0.2, -0.2)
     b.part(
         "flask",
         p.cylinder(0.011, (-0.012, 0, 0.385), (-0.06, 0, 0.285)),
@@ -171,7 +171,7 @@ def hot_plate_stirrer(b: ObjectBuilder, width: float) -> None:
         "case",
         slab(width / 2, width / 2, (0, 0.08)),
         slab(width / 2, (-width / 2 - 0.04, -width / 2 + 0.01), (0, 0.05)),
-        b.cylinder(0.45 * width, (0, 0.01, 0.08), (0, 0.01, 0.09)),
+        b.cylinder(0.45 * width, 0, 0.01, (0.08, 0.09)),
         look="white metal",
     )
     b.cut("case", slab(width / 2 - 0.006, (-width / 2 + 0.02, width / 2 - 0.006), (0.006, 0.074)))
@@ -190,13 +190,8 @@ def analytical_balance(b: ObjectBuilder, size: float) -> None:
         p.slab(0.11, (-0.07, -0.066), (0.06, 0.32)),
         look="white",
     )
-    b.bore("base", p.cylinder(0.007, (0, 0.03, 0.03), (0, 0.03, 0.1)))
-    b.part(
-        "pan",
-        p.cylinder(0.005, (0, 0.03, 0.04), (0, 0.03, 0.07)),
-        p.cylinder(0.045, (0, 0.03, 0.068), (0, 0.03, 0.073)),
-        look="steel",
-    )
+    b.bore("base", p.cylinder(0.007, 0, 0.03, (0.03, 0.1)))
+    b.part("pan", p.cylinder(0.005, 0, 0.03, (0.04, 0.07)), p.cylinder(0.045, 0, 0.03, (0.068, 0.073)), look="steel")
     b.slide("pan", "base", -Z, 0.004)
     for k, s in enumerate((-1, 1)):
         b.part(f"door_{k}", p.box((s * 0.104, -0.064, 0.062), (s * 0.108, 0.128, 0.308)), look="glass")
@@ -205,13 +200,11 @@ def analytical_balance(b: ObjectBuilder, size: float) -> None:
 
 @kind(words="lab stand, clamp stand, ring stand, burette stand", height=(0.5, 0.8))
 def retort_stand(b: ObjectBuilder, height: float) -> None:
-    b.part(
-        "base", slab(0.1, (-0.08, 0.1), (0, 0.015)), b.cylinder(0.006, (0, 0.07, 0.01), (0, 0.07, height)), look="steel"
-    )
+    b.part("base", slab(0.1, (-0.08, 0.1), (0, 0.015)), b.cylinder(0.006, 0, 0.07, (0.01, height)), look="steel")
     b.part(
         "clamp",
-        b.tube(0.016, 0.0075, (0, 0.07, 0.6 * height), (0, 0.07, 0.6 * height + 0.03)),
-        b.cylinder(0.005, (0, 0.056, 0.6 * height + 0.015), (0, -0.05, 0.6 * height + 0.015)),
+        b.tube(0.016, 0.0075, 0, 0.07, (0.6 * height, 0.6 * height + 0.03)),
+        b.cylinder(0.005, 0, (0.056, -0.05), 0.6 * height + 0.015),
         b.torus(0.035, 0.004, (0, -0.085, 0.6 * height + 0.015), Z),
         look="metal",
     )
@@ -234,7 +227,7 @@ def glove_box(b: ObjectBuilder, width: float) -> None:
     b.cut(
         "box",
         prism([(-0.28, 0.02), (0.28, 0.02), (0.28, 0.63), (0.01, 0.63), (-0.28, 0.29)], (0, 0, 0.6), width - 0.03, "x"),
-        [b.cylinder(0.08, (s * 0.4 * w, -1, 0.76), (s * 0.4 * w, 0, 0.76)) for s in (-1, 1)],
+        [b.cylinder(0.08, s * 0.4 * w, (-1, 0), 0.76) for s in (-1, 1)],
         slab((w - 0.1, w + 0.1), 0.2, (0.66, 1)),
     )
     leaf(
@@ -262,9 +255,9 @@ def test_tube_rack(b: ObjectBuilder, number: int) -> None:
         look="wood",
     )
     for k, x in enumerate(spread(number, -w + 0.01, w - 0.01)):
-        b.cut("rack", b.cylinder(0.0105, (x, 0, 0.006), (x, 0, 1)))
-        b.part(f"tube_{k}", b.rod(0.009, (x, 0, 0.016), (x, 0, 0.12)), look="glass")
-        b.cut(f"tube_{k}", b.cylinder(0.0078, (x, 0, 0.02), (x, 0, 1)))
+        b.cut("rack", b.cylinder(0.0105, x, 0, (0.006, 1)))
+        b.part(f"tube_{k}", b.rod(0.009, x, 0, (0.016, 0.12)), look="glass")
+        b.cut(f"tube_{k}", b.cylinder(0.0078, x, 0, (0.02, 1)))
         b.slide(f"tube_{k}", "rack", Z, 0.12)
 
 
@@ -313,9 +306,9 @@ def optical_bench(b: ObjectBuilder, number: int, length: float) -> None:
             f"carriage_{k}",
             slab((x - 0.03, x + 0.03), 0.045, (0.0615, 0.08)),
             [box((x - 0.03, s * 0.0345, 0.03), (x + 0.03, s * 0.045, 0.07)) for s in (-1, 1)],
-            b.cylinder(0.006, (x, 0, 0.079), (x, 0, 0.16)),
+            b.cylinder(0.006, x, 0, (0.079, 0.16)),
             b.torus(0.03, 0.005, (x, 0, 0.195), X),
-            b.cylinder(0.027, (x - 0.003, 0, 0.195), (x + 0.003, 0, 0.195)),
+            b.cylinder(0.027, (x - 0.003, x + 0.003), 0, 0.195),
             look="metal",
         )
         b.slide(f"carriage_{k}", "rail", X, step / 2 - 0.04, lower=-step / 2 + 0.04)
@@ -328,7 +321,7 @@ def bunsen_burner(b: ObjectBuilder, size: float) -> None:
         "base",
         p.cone(0.045, 0.03, 0, 0.02),
         p.cylinder(0.007, 0.018, 0.15),
-        p.cylinder(0.005, (0, 0, 0.03), (0.06, 0, 0.03)),
+        p.cylinder(0.005, (0, 0.06), 0, 0.03),
         look="brass",
     )
     b.cut("base", p.cylinder(0.0045, 0.05, 1))
@@ -344,11 +337,11 @@ def syringe_pump(b: ObjectBuilder, size: float) -> None:
         "body",
         p.slab(0.14, 0.06, (0, 0.09)),
         [p.slab((x - 0.008, x + 0.008), 0.045, (0.08, 0.125)) for x in (-0.13, 0.13)],
-        [p.cylinder(0.005, (-0.125, y, 0.11), (0.125, y, 0.11)) for y in (-0.03, 0.03)],
+        [p.cylinder(0.005, (-0.125, 0.125), y, 0.11) for y in (-0.03, 0.03)],
         look="white",
     )
     b.part("carriage", p.slab((0.03, 0.06), 0.045, (0.092, 0.15)), look="blue metal")
-    b.cut("carriage", [p.cylinder(0.0065, (0, y, 0.11), (0.1, y, 0.11)) for y in (-0.03, 0.03)])
+    b.cut("carriage", [p.cylinder(0.0065, (0, 0.1), y, 0.11) for y in (-0.03, 0.03)])
     b.slide("carriage", "body", -X, 0.1, lower=-0.05)
     knob(b, "knob", "body", p(0.1, -0.06, 0.045), 0.016 * size, -Y, high=0.016 * size)
 
@@ -380,13 +373,13 @@ def surgical_lamp(b: ObjectBuilder, size: float) -> None:
         "arm",
         p.tube(0.045, 0.033, 2.025, 2.12),
         p.slab((0.04, 0.8), 0.025, (2.04, 2.1)),
-        p.cylinder(0.03, (0.8, 0, 2), (0.8, 0, 2.1)),
+        p.cylinder(0.03, 0.8, 0, (2, 2.1)),
         look="white steel",
     )
     b.spin("arm", "mount", Z, p(0, 0, 0))
     b.part(
         "drop",
-        p.cylinder(0.028, (0.8, 0, 1.9), (0.8, 0, 1.997)),
+        p.cylinder(0.028, 0.8, 0, (1.9, 1.997)),
         [p.beam(0.02, 0.02, (0.8, s * 0.02, 1.91), (0.8, s * 0.27, 1.8)) for s in (-1, 1)],
         [p.box((0.785, s * 0.26, 1.6), (0.815, s * 0.28, 1.81)) for s in (-1, 1)],
         look="white steel",
@@ -394,11 +387,11 @@ def surgical_lamp(b: ObjectBuilder, size: float) -> None:
     b.spin("drop", "arm", Z, p(0.8, 0, 0))
     b.part(
         "head",
-        p.cone(0.25, 0.15, (0.8, 0, 1.58), (0.8, 0, 1.68)),
-        [p.cylinder(0.008, (0.8, s * 0.18, 1.63), (0.8, s * 0.258, 1.63)) for s in (-1, 1)],
+        p.cone(0.25, 0.15, 0.8, 0, (1.58, 1.68)),
+        [p.cylinder(0.008, 0.8, (s * 0.18, s * 0.258), 1.63) for s in (-1, 1)],
         look="white metal",
     )
-    b.hinge("head", "drop", Y, p(0.8, 0, 1.63), 0.7, lower=-0.7)
+    b.hinge("head", "drop", Y, p(0.8, 0, 1.63), 0.7, -0.7)
 
 
 @kind(words="bed table, laptop table, side table on wheels, c table", width=(0.6, 0.85), height=(0.6, 0.75))
@@ -428,7 +421,7 @@ def crutch(b: ObjectBuilder, height: float) -> None:
         "shaft",
         b.tube(0.012, 0.0095, 0.45 * height, height),
         b.cylinder(0.012, height - 0.01, height + 0.01),
-        b.rod(0.014, (0, 0.02, height), (0, -0.1, height)),
+        b.rod(0.014, 0, (0.02, -0.1), height),
         look="metal",
     )
     b.part("tube", b.cylinder(0.008, 0.02, 0.8 * height), b.cylinder(0.016, 0, 0.04), look="black metal")
@@ -455,7 +448,7 @@ def hemostat(b: ObjectBuilder, size: float) -> None:
         p.beam(0.008, 0.004, (-0.004, 0.05, 0.002), (0.02, -0.07, 0.002)),
         p.beam(0.008, 0.004, (-0.004, 0.05, 0.002), (-0.003, 0.09, 0.002)),
         p.torus(0.014, 0.003, (0.03, -0.08, 0.003), Z),
-        p.cylinder(0.0035, (0, 0.03, 0), (0, 0.03, 0.0085)),
+        p.cylinder(0.0035, 0, 0.03, (0, 0.0085)),
         look="steel",
     )
     b.part(
@@ -463,11 +456,11 @@ def hemostat(b: ObjectBuilder, size: float) -> None:
         p.beam(0.008, 0.004, (0.004, 0.05, 0.0065), (-0.02, -0.07, 0.0065)),
         p.beam(0.008, 0.004, (0.004, 0.05, 0.0065), (0.003, 0.09, 0.0065)),
         p.torus(0.014, 0.003, (-0.03, -0.08, 0.0075), Z),
-        p.cylinder(0.006, (0, 0.03, 0.0045), (0, 0.03, 0.008)),
+        p.cylinder(0.006, 0, 0.03, (0.0045, 0.008)),
         look="steel",
     )
-    b.cut("other_arm", p.cylinder(0.0042, (0, 0.03, -1), (0, 0.03, 1)))
-    b.hinge("other_arm", "arm", Z, p(0, 0.03, 0), 0.25, lower=-0.02)
+    b.cut("other_arm", p.cylinder(0.0042, 0, 0.03, (-1, 1)))
+    b.hinge("other_arm", "arm", Z, p(0, 0.03, 0), 0.25, -0.02)
 
 
 @kind(walls=50, words="mri scanner, mri machine, tomograph, x ray scanner", size=(0.9, 1.1))
@@ -482,7 +475,7 @@ def ct_scanner(b: ObjectBuilder, size: float) -> None:
     )
     b.cut(
         "gantry",
-        p.cylinder(0.38, (0, -1, 1.05), (0, 1, 1.05)),
+        p.cylinder(0.38, 0, (-1, 1), 1.05),
         p.slab((-0.97, -0.45), 0.37, (0.03, 1.85)),
         p.slab((0.45, 0.97), 0.37, (0.03, 1.85)),
         p.slab(0.27, (-2.35, -0.52), (0.03, 0.65)),
@@ -519,11 +512,11 @@ def c_arm(b: ObjectBuilder, size: float) -> None:
             )
             for a in [-1.575 + 0.45 * k for k in range(7)]
         ],
-        p.cylinder(0.12, (-0.15, 0, 0.55), (-0.15, 0, 0.75)),
-        p.cylinder(0.1, (-0.15, 0, 1.5), (-0.15, 0, 1.65)),
+        p.cylinder(0.12, -0.15, 0, (0.55, 0.75)),
+        p.cylinder(0.1, -0.15, 0, (1.5, 1.65)),
         look="white metal",
     )
-    b.hinge("arc", "slide_arm", -X, p(0.45, 0, 1.1), 1.2, lower=-1.2)
+    b.hinge("arc", "slide_arm", -X, p(0.45, 0, 1.1), 1.2, -1.2)
     for k, (x, y) in enumerate(((-0.15, 0), (1.05, -0.25), (1.05, 0.25))):
         caster(b, f"caster_{k}", "base", p(x, y, 0.12), 0.12 * size)
 
@@ -575,8 +568,8 @@ def prosthetic_leg(b: ObjectBuilder, size: float) -> None:
         p.slab(0.025, 0.015, (0.112, 0.13)),
         look="metal",
     )
-    b.hinge("shin", "socket", X, p(0, 0, 0.487), 0.5, lower=0)
+    b.hinge("shin", "socket", X, p(0, 0, 0.487), 0.5, 0)
     b.part(
         "foot", p.slab(0.016, 0.012, (0.055, 0.105)), p.slab(0.035, (-0.17, 0.06), (0.02, 0.06)), look="brown rubber"
     )
-    b.hinge("foot", "shin", X, p(0, 0, 0.095), 0.2, lower=-0.2)
+    b.hinge("foot", "shin", X, p(0, 0, 0.095), 0.2, -0.2)

@@ -418,8 +418,8 @@ def washing_machine(
     front = slab(0.5 * width, (0, depth), (0, height))
     tub = 0.5 * min(width, height - strip) - wall
     centre = (0.0, 0.5 * (height - strip))
-    cavity = cylinder(tub, (0, wall, centre[1]), (0, depth - wall, centre[1]))
-    mouth = cylinder(0.72 * tub, (0, -1.0, centre[1]), (0, 0.5 * depth, centre[1]))
+    cavity = cylinder(tub, 0, (wall, depth - wall), centre[1])
+    mouth = cylinder(0.72 * tub, 0, (-1.0, 0.5 * depth), centre[1])
     w.body("body", front - cavity - mouth)
     # A drum with three ribs on a shaft in the back wall.
     level = centre[1]
@@ -427,7 +427,7 @@ def washing_machine(
     radius = tub - 0.01 - clearance
     start = (0, wall + 0.01, level)
     end = (0, back - 0.04, level)
-    inner = cylinder(radius - 0.004, (0, 0, level), (0, back - 0.045, level))
+    inner = cylinder(radius - 0.004, 0, (0, back - 0.045), level)
     pivot = (0.0, back - 0.02, level)
     boss, hole, rotor = stub(pivot, (0, -1, 0), 0.03, clearance, length=0.022)
     w.add("body", boss)
@@ -450,8 +450,8 @@ def washing_machine(
     halves = barrel(length, barrel_radius, clearance, (on_body, on_door))
     of_body, of_door = [(half if side < 0 else half.mirror((1, 0, 0))).translate(pivot_2) for half in halves]
     w.add("body", of_body)
-    disc = cylinder(radius_2, (0, back_2, level_2), (0, front_2, level_2))
-    glass = cylinder(0.7 * radius_2, (0, front_2 - 1.0, level_2), (0, front_2 + 0.006, level_2))
+    disc = cylinder(radius_2, 0, (back_2, front_2), level_2)
+    glass = cylinder(0.7 * radius_2, 0, (front_2 - 1.0, front_2 + 0.006), level_2)
     grip_at = -side * 0.88 * radius_2
     grip = box((grip_at - 0.01, front_2 - 0.012, level_2 - 0.05), (grip_at + 0.01, front_2 + 0.001, level_2 + 0.05))
     w.body("door", disc - glass, of_door, grip)

@@ -19,11 +19,9 @@ def toy_train(b: ObjectBuilder, length: float, width: float, radius: float) -> N
     b.part(
         "engine",
         slab(length / 2, width / 2, (radius, 2.5 * radius)),
-        b.cylinder(
-            0.4 * width, (-0.1 * length, 0, 2.5 * radius + 0.3 * width), (length / 2, 0, 2.5 * radius + 0.3 * width)
-        ),
+        b.cylinder(0.4 * width, (-0.1 * length, length / 2), 0, 2.5 * radius + 0.3 * width),
         slab((-length / 2, -0.1 * length), width / 2, (2 * radius, 2.5 * radius + 1.2 * width)),
-        b.cylinder(0.15 * width, (0.35 * length, 0, 2.5 * radius), (0.35 * length, 0, 2.5 * radius + 1.1 * width)),
+        b.cylinder(0.15 * width, 0.35 * length, 0, (2.5 * radius, 2.5 * radius + 1.1 * width)),
         look="wood",
     )
     for i, x in enumerate(spread(b.count(2, 4), -0.48 * length, 0.48 * length)):
@@ -45,7 +43,7 @@ def pull_along_animal(b: ObjectBuilder, size: float) -> None:
     """A body on wheels, a head that nods, a tail that wags."""
     b.part(
         "body",
-        b.rod(0.35 * size, (-0.5 * size, 0, 0.8 * size), (0.5 * size, 0, 0.8 * size)),
+        b.rod(0.35 * size, (-0.5 * size, 0.5 * size), 0, 0.8 * size),
         [
             slab((x * size - 0.1 * size, x * size + 0.1 * size), 0.3 * size, (0.2 * size, 0.7 * size))
             for x in (-0.45, 0.45)
@@ -66,7 +64,7 @@ def pull_along_animal(b: ObjectBuilder, size: float) -> None:
         "head", "body", Y, (x + (0.3 * size if b.style.has_bore else 0), 0, 1.1 * size), 0.25, lower=-0.25, ajar=False
     )
     b.part("tail", b.rod(0.06 * size, (-0.9 * size - g, 0, 0.95 * size), (-1.2 * size, 0, 1.3 * size)))
-    b.hinge("tail", "body", X if b.maybe() else Z, (-0.9 * size - g, 0, 0.95 * size), 0.3, lower=-0.3, ajar=False)
+    b.hinge("tail", "body", X if b.maybe() else Z, (-0.9 * size - g, 0, 0.95 * size), 0.3, -0.3, ajar=False)
     for i, x in enumerate((-0.45 * size, 0.45 * size)):
         for s in (-1, 1):
             wheel(
@@ -92,15 +90,15 @@ def articulated_doll(b: ObjectBuilder, size: float) -> None:
         look="wood",
     )
     b.part("head", ball(0.13 * size, (0, 0, 1.13 * size + g)))
-    b.hinge("head", "torso", Z, (0, 0, 1 * size), 1.3, lower=-1.3, ajar=False)
+    b.hinge("head", "torso", Z, (0, 0, 1 * size), 1.3, -1.3, ajar=False)
     for s, side in ((-1, "right"), (1, "left")):
         x = s * (0.18 * size + g)
         top = vector(x + s * 0.05 * size, 0, 0.9 * size)
         b.part(f"arm_{side}", b.rod(0.05 * size, top, top - 0.4 * size * Z))
-        b.hinge(f"arm_{side}", "torso", -X, (x, 0, 0.9 * size), 2.5, lower=-0.5, ajar=False)
+        b.hinge(f"arm_{side}", "torso", -X, (x, 0, 0.9 * size), 2.5, -0.5, ajar=False)
         hip = vector(s * 0.09 * size, 0, 0.43 * size - g)
         b.part(f"leg_{side}", b.rod(0.07 * size, hip, hip - 0.11 * size * Z))
-        b.hinge(f"leg_{side}", "torso", -X, hip, 1.2, lower=-0.4, ajar=False)
+        b.hinge(f"leg_{side}", "torso", -X, hip, 1.2, -0.4, ajar=False)
         if b.maybe():
             knee = hip - (0.24 * size + g) * Z
             toe = knee + size * vector(-0.06, -0.16, -0.19)
@@ -147,12 +145,12 @@ def abacus(b: ObjectBuilder, width: float, number: int) -> None:
     )
     g = b.gap(r) + 0.0001
     for i, z in enumerate(spread(number, 0.05 * width, h - 0.05 * width)):
-        b.part("frame", b.cylinder(0.02 * width, (-width / 2, 0, z), (width / 2, 0, z)))
+        b.part("frame", b.cylinder(0.02 * width, (-width / 2, width / 2), 0, z))
         m = b.count(1, 3)
         for k in range(m):
             x = -width / 2 + (0.06 + 0.13 * k) * width + 0.001
-            b.part(f"bead_{i}_{k}", b.cylinder(r, (x, 0, z), (x + 0.1 * width, 0, z)), look="wood")
-            b.bore(f"bead_{i}_{k}", b.cylinder(0.02 * width + 1.5 * g, (x - 1, 0, z), (x + 1, 0, z)))
+            b.part(f"bead_{i}_{k}", b.cylinder(r, (x, x + 0.1 * width), 0, z), look="wood")
+            b.bore(f"bead_{i}_{k}", b.cylinder(0.02 * width + 1.5 * g, (x - 1, x + 1), 0, z))
             if k == m - 1:
                 b.slide(f"bead_{i}_{k}", "frame", X, 0.4 * width, ajar=False)
             else:
@@ -196,7 +194,7 @@ def weight_machine(b: ObjectBuilder, height: float, number: int) -> None:
         slab(w / 2, 0.2, (0, 0.06)),
         slab(w / 2, 0.05, (height, height + 0.08)),
         [slab((s * w / 2 - 0.03, s * w / 2 + 0.03), 0.04, (0, height + 0.05)) for s in (-1, 1)],
-        [b.cylinder(0.014, (s * 0.12, 0, 0.05), (s * 0.12, 0, height + 0.01)) for s in (-1, 1)],
+        [b.cylinder(0.014, s * 0.12, 0, (0.05, height + 0.01)) for s in (-1, 1)],
         look="steel",
     )
     g = b.gap(0.02) + 0.0003
@@ -204,7 +202,7 @@ def weight_machine(b: ObjectBuilder, height: float, number: int) -> None:
     for k in range(number):
         t = b.draw(0.06, 0.2)
         b.part(f"plate_{k}", slab(0.2, 0.06, (z, z + t)), look="steel")
-        b.bore(f"plate_{k}", [b.cylinder(0.014 + 1.5 * g, (s * 0.12, 0, 0), (s * 0.12, 0, height)) for s in (-1, 1)])
+        b.bore(f"plate_{k}", [b.cylinder(0.014 + 1.5 * g, s * 0.12, 0, (0, height)) for s in (-1, 1)])
         b.slide(
             f"plate_{k}",
             "frame",
@@ -303,7 +301,7 @@ def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
         u = vector(cos(a), sin(a), 0)
         p = (0.05 + g) * u + 0.84 * height * Z
         b.part(f"leg_{k}", b.cylinder(0.012, p, p + 0.4 * height * u - 0.84 * height * Z), look="metal")
-        b.hinge(f"leg_{k}", "column", np.cross(Z, u) * -1, p, 0.3, lower=-0.3, ajar=False)
+        b.hinge(f"leg_{k}", "column", np.cross(Z, u) * -1, p, 0.3, -0.3, ajar=False)
     b.part(
         "pan",
         b.cylinder(0.03, height + g, height + 0.04),
@@ -315,14 +313,14 @@ def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
         "camera",
         slab(0.03 - g, 0.02, (height + 0.05, height + 0.12)),
         slab(0.07, 0.03, (height + 0.11, height + 0.2)),
-        b.cylinder(0.03, (0, -0.02, height + 0.155), (0, -0.06, height + 0.155)),
+        b.cylinder(0.03, 0, (-0.02, -0.06), height + 0.155),
     )
-    b.hinge("camera", "pan", X, (0, 0, height + 0.08), 0.3, lower=-0.3, ajar=False)
+    b.hinge("camera", "pan", X, (0, 0, height + 0.08), 0.3, -0.3, ajar=False)
     b.part(
         "lens",
-        b.tube(0.034, 0.0305 + g, (0, -0.035, height + 0.155), (0, -0.075, height + 0.155))
+        b.tube(0.034, 0.0305 + g, 0, (-0.035, -0.075), height + 0.155)
         if b.style.has_bore
-        else b.cylinder(0.03, (0, -0.06, height + 0.155), (0, -0.1, height + 0.155)),
+        else b.cylinder(0.03, 0, (-0.06, -0.1), height + 0.155),
     )
     b.spin("lens", "camera", -Y, (0, -0.06, height + 0.155))
 
@@ -486,10 +484,7 @@ def slot_machine(b: ObjectBuilder, size: float, number: int) -> None:
     b.cut("machine", slab(0.4 * size, (-0.1, 0.5 * size), (0.75 * size, 1.15 * size)))
     for i, x in enumerate(spread(number, -0.38 * size, 0.38 * size)):
         half = 0.36 * size / number
-        b.part(
-            f"reel_{i}",
-            b.cylinder(0.18 * size, (x - half, 0.2 * size, 0.95 * size), (x + half, 0.2 * size, 0.95 * size)),
-        )
+        b.part(f"reel_{i}", b.cylinder(0.18 * size, (x - half, x + half), 0.2 * size, 0.95 * size))
         b.spin(f"reel_{i}", "machine", X, (x, 0.2 * size, 0.95 * size))
     at = vector(0.5 * size + g, 0.3 * size, 0.7 * size)
     b.part(
@@ -514,10 +509,10 @@ def awning(b: ObjectBuilder, width: float) -> None:
         b.part(
             f"arm_{k}",
             beam(0.05, 0.05, (x, y, 0.03 - 0.025 - g), (x - s * 0.3 * width, y - 0.5, 0.03 - 0.025 - g)),
-            b.cylinder(0.03, (x, y, 0.03 - 0.05 - g), (x, y, 0.03 - g)),
+            b.cylinder(0.03, x, y, (0.03 - 0.05 - g, 0.03 - g)),
             look="metal",
         )
-        b.hinge(f"arm_{k}", "case", s * Z * -1, (x, y, 0), 0.6, lower=-0.5, ajar=False)
+        b.hinge(f"arm_{k}", "case", s * Z * -1, (x, y, 0), 0.6, -0.5, ajar=False)
     crank(b, "crank", "case", (width / 2, 0, 0.1), X, 0.2)
 
 
@@ -549,7 +544,7 @@ def solar_tracker(b: ObjectBuilder, size: float) -> None:
     if b.style.has_bore:
         b.part("panel", b.cylinder(0.02 * size, c - 0.15 * size * X, c + 0.15 * size * X))
         b.cut("head", b.cylinder(0.02 * size + 1.5 * g, c - 0.15 * size * X, c + 0.15 * size * X))
-    b.hinge("panel", "head", X, c, 0.5, lower=-0.6, ajar=False)
+    b.hinge("panel", "head", X, c, 0.5, -0.6, ajar=False)
 
 
 @kind(words="book press", width=(0.15, 0.35), z=(0.02, 0.05))
@@ -559,7 +554,7 @@ def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
         "lower",
         slab(width / 2, width / 2, (0, 0.015)),
         [
-            b.cylinder(0.004, (x, y, 0.01), (x, y, 0.12))
+            b.cylinder(0.004, x, y, (0.01, 0.12))
             for x in (-0.42 * width, 0.42 * width)
             for y in (-0.42 * width, 0.42 * width)
         ],
@@ -568,16 +563,16 @@ def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
     g = b.gap(0.005) + 0.0003
     b.part("upper", slab(width / 2, width / 2, (z, z + 0.015)), look="wood")
     for k, (x, y) in enumerate([(x, y) for x in (-0.42 * width, 0.42 * width) for y in (-0.42 * width, 0.42 * width)]):
-        b.bore("upper", b.cylinder(0.004 + 1.5 * g, (x, y, 0), (x, y, 1)))
+        b.bore("upper", b.cylinder(0.004 + 1.5 * g, x, y, (0, 1)))
         n = f"nut_{k}"
         low = z + 0.035 + g
         b.part(
             n,
-            b.cylinder(0.009, (x, y, low), (x, y, low + 0.012)),
+            b.cylinder(0.009, x, y, (low, low + 0.012)),
             beam(0.004, 0.008, (x - 0.02, y, low + 0.012), (x + 0.02, y, low + 0.012)),
             look="metal",
         )
-        b.bore(n, b.cylinder(0.004 + 1.5 * g, (x, y, 0), (x, y, 1)))
+        b.bore(n, b.cylinder(0.004 + 1.5 * g, x, y, (0, 1)))
         b.spin(n, "lower", Z, (x, y, low))
     b.slide("upper", "lower", Z, 0.018, ajar=False)
 
@@ -599,7 +594,7 @@ def piano(b: ObjectBuilder, keys: int) -> None:
         slab(0.75, (-0.32, 0), (0.6, 0.7)),
         [box((s * 0.66, -0.31, 0), (s * 0.75, -0.22, 0.61)) for s in (-1, 1)],
         [box((s * 0.69, -0.32, 0.6), (s * 0.75, 0, 0.82)) for s in (-1, 1)],
-        b.cylinder(0.008, (-0.72, -0.05, 0.8), (0.72, -0.05, 0.8)),
+        b.cylinder(0.008, (-0.72, 0.72), -0.05, 0.8),
         slab(0.2, (-0.04, 0), (0, 0.1)),
         look="black wood",
     )
@@ -621,10 +616,10 @@ def piano(b: ObjectBuilder, keys: int) -> None:
     b.part(
         "lid",
         slab(0.685, (-0.31, -0.06), (0.79, 0.81)),
-        b.cylinder(0.018, (-0.685, -0.05, 0.8), (0.685, -0.05, 0.8)),
+        b.cylinder(0.018, (-0.685, 0.685), -0.05, 0.8),
         look="black wood",
     )
-    b.cut("lid", b.cylinder(0.0085 + g, (-1, -0.05, 0.8), (1, -0.05, 0.8)))
+    b.cut("lid", b.cylinder(0.0085 + g, (-1, 1), -0.05, 0.8))
     b.hinge("lid", "body", -X, (0, -0.05, 0.8), 1.57)
 
 
@@ -644,10 +639,10 @@ def grand_piano(b: ObjectBuilder, keys: int) -> None:
         prism([(-0.75, -0.8), (0.75, -0.8), *wing[2:]], (0, 0, 0.72), 0.14, "z"),
         prism(wing, (0, 0, 0.85), 0.2, "z"),
         [box((s * 0.68, -0.8, 0.7), (s * 0.75, -0.45, 0.92)) for s in (-1, 1)],
-        [b.cylinder(0.05, (x, y, 0), (x, y, 0.66)) for x, y in ((-0.62, -0.65), (0.62, -0.65), (-0.45, 0.85))],
+        [b.cylinder(0.05, x, y, (0, 0.66)) for x, y in ((-0.62, -0.65), (0.62, -0.65), (-0.45, 0.85))],
         slab(0.03, (-0.5, -0.4), (0.03, 0.66)),
         slab(0.1, (-0.52, -0.38), (0.03, 0.11)),
-        b.cylinder(0.01, (-0.78, -0.4, 0.96), (-0.78, 1, 0.96)),
+        b.cylinder(0.01, -0.78, (-0.4, 1), 0.96),
         [box((-0.795, y - 0.025, 0.9), (-0.735, y + 0.025, 0.965)) for y in (-0.375, 0.975)],
         look="black wood",
     )
@@ -691,9 +686,9 @@ def grand_piano(b: ObjectBuilder, keys: int) -> None:
             0.02,
             "z",
         ),
-        b.cylinder(0.018, (-0.78, -0.3, 0.96), (-0.78, 0.9, 0.96)),
+        b.cylinder(0.018, -0.78, (-0.3, 0.9), 0.96),
         box((-0.78, -0.3, 0.964), (-0.72, 0.9, 0.979)),
         look="black wood",
     )
-    b.cut("lid", b.cylinder(0.01 + g, (-0.78, -2, 0.96), (-0.78, 2, 0.96)))
+    b.cut("lid", b.cylinder(0.01 + g, -0.78, (-2, 2), 0.96))
     b.hinge("lid", "body", -Y, (-0.78, 0.3, 0.96), 0.7)

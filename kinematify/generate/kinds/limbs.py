@@ -94,7 +94,7 @@ def fingered(
             end = pitch if j == joints - 1 else pitch - start
             blade = slab(0.5 * wide, _FINGER_HALF, (start, end))
             if j == joints - 1:
-                blade += cylinder(_FINGER_HALF, (-0.5 * wide, 0, end), (0.5 * wide, 0, end))
+                blade += cylinder(_FINGER_HALF, (-0.5 * wide, 0.5 * wide), 0, end)
             name, up = f"{called}_{k + 1}" + (f"_{j + 1}" if j else ""), (0, 0, j * pitch)
             solids = forked, tongue, blade.translate((0, -around, _KNUCKLE)).rotate((0, 0, angle))
             forks, *link = [solid.translate(up) for solid in solids] if j else solids
@@ -178,12 +178,7 @@ def tracked(w: Workshop, clearance: float, called: str, length: float, width: fl
 
     def belt_of(x: float) -> list[Manifold]:
         return [
-            hull(
-                *[
-                    cylinder(round_, (x - 0.5 * belt, y, 0.5 * high), (x + 0.5 * belt, y, 0.5 * high))
-                    for y in (-run, run)
-                ]
-            ),
+            hull(*[cylinder(round_, (x - 0.5 * belt, x + 0.5 * belt), y, 0.5 * high) for y in (-run, run)]),
             *[
                 box((x - 0.5 * belt, y - cleat, z0), (x + 0.5 * belt, y + cleat, z1))
                 for y in np.linspace(-run, run, 9)

@@ -40,9 +40,7 @@ def tool_cart(b: ObjectBuilder, width: float, depth: float, height: float) -> No
             )
             for s in (-1, 1)
         ],
-        b.cylinder(
-            0.014, (width / 2 + 0.07, -0.45 * depth, height - 0.08), (width / 2 + 0.07, 0.45 * depth, height - 0.08)
-        ),
+        b.cylinder(0.014, width / 2 + 0.07, (-0.45 * depth, 0.45 * depth), height - 0.08),
     )
     low = z + 0.05
     for k, share in enumerate(sorted([b.draw(0.5, 1.5) for i in range(b.count(3, 6))], reverse=True)):
@@ -107,8 +105,8 @@ def gate_valve(b: ObjectBuilder, radius: float, number: int) -> None:
     p = b.sized(radius)
     b.part(
         "body",
-        p.tube(1, 0.7, (-3, 0, 0), (3, 0, 0)),
-        [p.tube(1.7, 0.7, (s * 3, 0, 0), (s * 2.6, 0, 0)) for s in (-1, 1)],
+        p.tube(1, 0.7, (-3, 3), 0, 0),
+        [p.tube(1.7, 0.7, (s * 3, s * 2.6), 0, 0) for s in (-1, 1)],
         p.ball(1.3, (0, 0, 0)),
         p.cone(0.9, 0.5, 1, 3),
         look="steel",
@@ -143,12 +141,12 @@ def gate_valve(b: ObjectBuilder, radius: float, number: int) -> None:
 )
 def ball_valve(b: ObjectBuilder, radius: float, number: int) -> None:
     """A lever that turns by a quarter above a pipe."""
-    b.part("pipe", b.cylinder(radius, (-4 * radius * number, 0, 0), (4 * radius * number, 0, 0)), look="steel")
+    b.part("pipe", b.cylinder(radius, (-4 * radius * number, 4 * radius * number), 0, 0), look="steel")
     for k, x in enumerate(spread(number, -4 * radius * number, 4 * radius * number)):
         b.part(
             "pipe",
-            b.cylinder(1.4 * radius, (x - 1.5 * radius, 0, 0), (x + 1.5 * radius, 0, 0)),
-            b.cylinder(0.5 * radius, (x, 0, 0), (x, 0, 1.8 * radius)),
+            b.cylinder(1.4 * radius, (x - 1.5 * radius, x + 1.5 * radius), 0, 0),
+            b.cylinder(0.5 * radius, x, 0, (0, 1.8 * radius)),
         )
         lever(b, f"lever_{k}", "pipe", (x, 0, 1.8 * radius), Z, b.pick(X, Y), 5 * radius, reach=1.57)
 
@@ -188,7 +186,7 @@ def control_box(b: ObjectBuilder, width: float, height: float, depth: float, row
             elif kind == "levers":
                 g = b.gap(0.1 * pitch)
                 tip = (x, -0.5 * pitch, z + 0.25 * pitch)
-                b.part("box", b.cylinder(0.18 * pitch, (x, 0.01 * pitch, z), (x, -0.06 * pitch, z)))
+                b.part("box", b.cylinder(0.18 * pitch, x, (0.01 * pitch, -0.06 * pitch), z))
                 b.part(name, b.rod(0.06 * pitch, (x, -0.12 * pitch - g, z), tip))
                 b.hinge(
                     name, "box", X, (x, -0.12 * pitch - g if b.style.has_bore else 0, z), 0.8, lower=-0.05, ajar=False
@@ -272,10 +270,7 @@ def knife_switch(b: ObjectBuilder, number: int, width: float) -> None:
         b.cylinder(0.008, (0, -0.027, 0.095), (0, -0.09, 0.11)),
     )
     if not b.style.has_bore:
-        b.part(
-            f"{b.pick('board', 'blade')}",
-            b.cylinder(0.003, (xs[0] - 0.01, -0.0275, -0.08), (xs[-1] + 0.01, -0.0275, -0.08)),
-        )
+        b.part(f"{b.pick('board', 'blade')}", b.cylinder(0.003, (xs[0] - 0.01, xs[-1] + 0.01), -0.0275, -0.08))
     b.hinge("blade", "board", X, (0, -0.0275, -0.08), 1.2)
 
 
@@ -314,7 +309,7 @@ def bottle_jack(b: ObjectBuilder, radius: float, height: float) -> None:
         "body",
         slab(2 * radius, 2 * radius, (0, 0.02)),
         b.cylinder(1.3 * radius, 0.01, height),
-        b.cylinder(0.5 * radius, (1.6 * radius, 0, 0), (1.6 * radius, 0, 0.5 * height)),
+        b.cylinder(0.5 * radius, 1.6 * radius, 0, (0, 0.5 * height)),
         slab((0, 2 * radius), 0.4 * radius, (0.3 * height, 0.4 * height)),
         look="steel",
     )
@@ -442,14 +437,14 @@ def hasp_latch(b: ObjectBuilder, size: float, hook: bool) -> None:
         p.slab(1, (0, 0.15), 1),
         p.slab((2.5, 3.5), (0, 0.15), 1),
         p.slab((-1, 3.5), (0.1, 0.3), 0.4),
-        p.cylinder(0.2, (3, 0.1, 0), (3, -0.8, 0)),
+        p.cylinder(0.2, 3, (0.1, -0.8), 0),
         look="steel",
     )
     g = b.gap(0.1 * size)
     b.part(
         "hook",
         beam(0.3 * size, 0.4 * size, (-0.2 * size, -0.2 * size - g, 0), (2.7 * size, -0.2 * size - g, 0)),
-        b.cylinder(0.3 * size, (0, -g, 0), (0, -0.45 * size - g, 0)),
+        b.cylinder(0.3 * size, 0, (-g, -0.45 * size - g), 0),
         look="steel",
     )
     if hook:
@@ -483,16 +478,16 @@ def pulley_block(b: ObjectBuilder, radius: float, number: int) -> None:
         slab(0.5 * radius, number * pitch / 2 + 0.1 * radius, (-1.4 * radius, -1.15 * radius)),
         slab(0.5 * radius, number * pitch / 2 + 0.1 * radius, (1.15 * radius, 1.4 * radius)),
     )
-    b.part("block", b.cylinder(0.12 * radius, (0, -number * pitch / 2, 0), (0, number * pitch / 2, 0)))
+    b.part("block", b.cylinder(0.12 * radius, 0, (-number * pitch / 2, number * pitch / 2), 0))
     for k, y in enumerate(ys):
         b.part(
             f"sheave_{k}",
-            b.cylinder(radius, (0, y - 0.4 * pitch, 0), (0, y - 0.15 * pitch, 0)),
-            b.cylinder(0.8 * radius, (0, y - 0.2 * pitch, 0), (0, y + 0.2 * pitch, 0)),
-            b.cylinder(radius, (0, y + 0.15 * pitch, 0), (0, y + 0.4 * pitch, 0)),
+            b.cylinder(radius, 0, (y - 0.4 * pitch, y - 0.15 * pitch), 0),
+            b.cylinder(0.8 * radius, 0, (y - 0.2 * pitch, y + 0.2 * pitch), 0),
+            b.cylinder(radius, 0, (y + 0.15 * pitch, y + 0.4 * pitch), 0),
             look="metal",
         )
-        b.bore(f"sheave_{k}", b.cylinder(0.12 * radius + 1.5 * g, (0, -radius * number, 0), (0, radius * number, 0)))
+        b.bore(f"sheave_{k}", b.cylinder(0.12 * radius + 1.5 * g, 0, (-radius * number, radius * number), 0))
         b.spin(f"sheave_{k}", "block", Y, (0, y, 0))
     b.part(
         "hook",

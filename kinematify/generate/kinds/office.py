@@ -22,7 +22,7 @@ def typewriter(b: ObjectBuilder, number: int) -> None:
     b.part(
         "carriage",
         slab(0.19, (0.06, 0.14), (0.102, 0.112)),
-        b.cylinder(0.022, (-0.16, 0.1, 0.132), (0.16, 0.1, 0.132)),
+        b.cylinder(0.022, (-0.16, 0.16), 0.1, 0.132),
         [box((s * 0.17 - 0.01, 0.075, 0.11), (s * 0.17 + 0.01, 0.125, 0.15)) for s in (-1, 1)],
         look="black metal",
     )
@@ -30,11 +30,11 @@ def typewriter(b: ObjectBuilder, number: int) -> None:
     for k, x in enumerate(spread(number, -0.15, 0.15)):
         b.part(
             f"key_{k}",
-            b.cylinder(0.009, (x, -0.11, 0.068), (x, -0.11, 0.076)),
-            b.cylinder(0.003, (x, -0.11, 0.03), (x, -0.11, 0.07)),
+            b.cylinder(0.009, x, -0.11, (0.068, 0.076)),
+            b.cylinder(0.003, x, -0.11, (0.03, 0.07)),
             look="black",
         )
-        b.bore("body", b.cylinder(0.0045, (x, -0.11, 0.01), (x, -0.11, 0.2)))
+        b.bore("body", b.cylinder(0.0045, x, -0.11, (0.01, 0.2)))
         b.slide(f"key_{k}", "body", -Z, 0.006)
 
 
@@ -63,13 +63,8 @@ def cash_register(b: ObjectBuilder, width: float) -> None:
         ],
     )
     b.slide("drawer", "body", -Y, 0.25)
-    b.part(
-        "display",
-        slab(0.09, (0.08, 0.1), (0.25, 0.35)),
-        b.cylinder(0.008, (-0.03, 0.1, 0.253), (0.03, 0.1, 0.253)),
-        look="black",
-    )
-    b.hinge("display", "body", X, (0, 0.1, 0.253), 0.3, lower=-0.3)
+    b.part("display", slab(0.09, (0.08, 0.1), (0.25, 0.35)), b.cylinder(0.008, (-0.03, 0.03), 0.1, 0.253), look="black")
+    b.hinge("display", "body", X, (0, 0.1, 0.253), 0.3, -0.3)
 
 
 @kind(words="telephone, rotary telephone, dial telephone, landline phone, old phone", size=(0.9, 1.1))
@@ -81,11 +76,11 @@ def rotary_phone(b: ObjectBuilder, size: float) -> None:
         [p.box((s * 0.05 - 0.008, 0.02, 0.09), (s * 0.05 + 0.008, 0.08, 0.115)) for s in (-1, 1)],
         look="black",
     )
-    b.cut("body", [p.cylinder(0.0125, (s * 0.03, 0.05, 0.115), (s * 0.07, 0.05, 0.115)) for s in (-1, 1)])
+    b.cut("body", [p.cylinder(0.0125, (s * 0.03, s * 0.07), 0.05, 0.115) for s in (-1, 1)])
     b.part(
         "handset",
-        p.cylinder(0.0115, (-0.13, 0.05, 0.117), (0.13, 0.05, 0.117)),
-        [p.cone(0.026, 0.018, (s * 0.125, 0.05, 0.092), (s * 0.125, 0.05, 0.125)) for s in (-1, 1)],
+        p.cylinder(0.0115, (-0.13, 0.13), 0.05, 0.117),
+        [p.cone(0.026, 0.018, s * 0.125, 0.05, (0.092, 0.125)) for s in (-1, 1)],
         look="black",
     )
     b.slide("handset", "body", Z, 0.1)
@@ -100,17 +95,14 @@ def rotary_phone(b: ObjectBuilder, size: float) -> None:
     b.hinge("dial", "body", up, at, 5.0)
 
 
-@kind(
-    words="cassette recorder, cassette player, tape recorder",
-    width=(0.4, 0.6),
-)
+@kind(words="cassette recorder, cassette player, tape recorder", width=(0.4, 0.6))
 def boombox(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     h = 0.22
     b.part(
         "case",
         slab(w, 0.06, (0, h)),
-        [b.cylinder(0.08, (s * 0.66 * w, -0.066, 0.11), (s * 0.66 * w, -0.059, 0.11)) for s in (-1, 1)],
+        [b.cylinder(0.08, s * 0.66 * w, (-0.066, -0.059), 0.11) for s in (-1, 1)],
         look="grey",
     )
     b.cut("case", slab(0.055, (-0.1, -0.03), (0.025, 0.105)))
@@ -129,14 +121,14 @@ def dvd_player(b: ObjectBuilder, width: float) -> None:
     b.part(
         "case",
         slab(w, 0.14, (0.006, 0.055)),
-        [b.cylinder(0.012, (x, y, 0), (x, y, 0.007)) for x in (-0.8 * w, 0.8 * w) for y in (-0.11, 0.11)],
+        [b.cylinder(0.012, x, y, (0, 0.007)) for x in (-0.8 * w, 0.8 * w) for y in (-0.11, 0.11)],
         look="black metal",
     )
     b.cut("case", slab(0.072, (-0.2, 0.06), (0.022, 0.042)), slab((0.1, w - 0.01), 0.13, (0.012, 0.05)))
     b.part(
         "tray", slab(0.07, (-0.143, 0.05), (0.024, 0.034)), slab(0.071, (-0.146, -0.141), (0.023, 0.041)), look="black"
     )
-    b.cut("tray", b.cylinder(0.061, (0, -0.065, 0.028), (0, -0.065, 0.1)))
+    b.cut("tray", b.cylinder(0.061, 0, -0.065, (0.028, 0.1)))
     b.slide("tray", "case", -Y, 0.13)
     button(b, "power", "case", (-0.85 * w, -0.14, 0.03), (0.016, 0.01), 0.004, -Y)
 
@@ -151,14 +143,14 @@ def game_controller(b: ObjectBuilder, size: float) -> None:
         look="black",
     )
     for k, x in enumerate((-0.025, 0.025)):
-        b.bore("body", p.cone(0.008, 0.013, (x, -0.012, 0.018), (x, -0.012, 0.0301)))
+        b.bore("body", p.cone(0.008, 0.013, x, -0.012, (0.018, 0.0301)))
         b.part(
             f"stick_{k}",
-            p.cylinder(0.004, (x, -0.012, 0.019), (x, -0.012, 0.036)),
-            p.cylinder(0.009, (x, -0.012, 0.035), (x, -0.012, 0.041)),
+            p.cylinder(0.004, x, -0.012, (0.019, 0.036)),
+            p.cylinder(0.009, x, -0.012, (0.035, 0.041)),
             look="grey rubber",
         )
-        b.hinge(f"stick_{k}", "body", X, p(x, -0.012, 0.021), 0.3, lower=-0.3)
+        b.hinge(f"stick_{k}", "body", X, p(x, -0.012, 0.021), 0.3, -0.3)
     for k, (x, y) in enumerate(((0.03, 0.012), (0.042, 0.02), (0.03, 0.026), (0.018, 0.018))):
         button(b, f"button_{k}", "body", p(x, y, 0.03), (0.008 * size, 0.008 * size), 0.004 * size, Z, is_round=True)
 
@@ -167,24 +159,24 @@ def game_controller(b: ObjectBuilder, size: float) -> None:
 def joystick(b: ObjectBuilder, height: float) -> None:
     b.part("base", slab(0.08, 0.08, (0, 0.045)), look="black")
     b.cut("base", slab(0.05, 0.05, (0.01, 1)))
-    b.bore("base", b.cylinder(0.0062, (-0.07, 0, 0.03), (0.07, 0, 0.03)))
+    b.bore("base", b.cylinder(0.0062, (-0.07, 0.07), 0, 0.03))
     b.part(
         "frame",
         [slab(0.03, (s * 0.03, s * 0.036), (0.022, 0.038)) for s in (-1, 1)],
         [slab((s * 0.03, s * 0.036), 0.036, (0.022, 0.038)) for s in (-1, 1)],
-        [b.cylinder(0.005, (s * 0.034, 0, 0.03), (s * 0.068, 0, 0.03)) for s in (-1, 1)],
+        [b.cylinder(0.005, (s * 0.034, s * 0.068), 0, 0.03) for s in (-1, 1)],
         look="metal",
     )
-    b.bore("frame", b.cylinder(0.0062, (0, -0.05, 0.03), (0, 0.05, 0.03)))
-    b.hinge("frame", "base", X, (0, 0, 0.03), 0.3, lower=-0.3)
+    b.bore("frame", b.cylinder(0.0062, 0, (-0.05, 0.05), 0.03))
+    b.hinge("frame", "base", X, (0, 0, 0.03), 0.3, -0.3)
     b.part(
         "stick",
-        b.cylinder(0.005, (0, -0.04, 0.03), (0, 0.04, 0.03)),
+        b.cylinder(0.005, 0, (-0.04, 0.04), 0.03),
         b.cylinder(0.008, 0.028, 0.1),
         b.rod(0.018, 0.1, height),
         look="grey",
     )
-    b.hinge("stick", "frame", Y, (0, 0, 0.03), 0.3, lower=-0.3)
+    b.hinge("stick", "frame", Y, (0, 0, 0.03), 0.3, -0.3)
 
 
 @kind(words="mouse, gaming mouse", size=(0.9, 1.1))
@@ -194,14 +186,14 @@ def computer_mouse(b: ObjectBuilder, size: float) -> None:
         "body",
         p.slab(0.03, (-0.015, 0.06), (0, 0.03)),
         p.slab(0.03, (-0.06, -0.01), (0, 0.02)),
-        p.cylinder(0.03, (0, 0.055, 0), (0, 0.055, 0.03)),
+        p.cylinder(0.03, 0, 0.055, (0, 0.03)),
         look="black",
     )
     b.bore("body", p.slab(0.006, (-0.052, -0.024), (0.004, 0.1)))
     for k, (a, b_) in enumerate(((-0.029, -0.0065), (0.0065, 0.029))):
         b.part(f"button_{k}", p.box((a, -0.06, 0.023), (b_, -0.017, 0.028)), look="grey")
         b.hinge(f"button_{k}", "body", X, p(0, -0.017, 0.028), 0.05)
-    b.part("wheel", p.cylinder(0.012, (-0.0035, -0.038, 0.019), (0.0035, -0.038, 0.019)), look="rubber")
+    b.part("wheel", p.cylinder(0.012, (-0.0035, 0.0035), -0.038, 0.019), look="rubber")
     b.spin("wheel", "body", X, p(0, -0.038, 0.019))
 
 
@@ -287,12 +279,12 @@ def microphone_stand(b: ObjectBuilder, height: float) -> None:
     b.slide("post", "base", Z, 0.35 * height)
     b.part(
         "boom",
-        b.cylinder(0.008, (-0.2, 0, height + 0.018), (0.45, 0, height + 0.018)),
-        b.cylinder(0.018, (-0.3, 0, height + 0.018), (-0.2, 0, height + 0.018)),
-        b.rod(0.02, (0.47, 0, height + 0.018), (0.56, 0, height + 0.018)),
+        b.cylinder(0.008, (-0.2, 0.45), 0, height + 0.018),
+        b.cylinder(0.018, (-0.3, -0.2), 0, height + 0.018),
+        b.rod(0.02, (0.47, 0.56), 0, height + 0.018),
         look="black steel",
     )
-    b.hinge("boom", "post", Y, (0, 0, height + 0.018), 0.7, lower=-0.5)
+    b.hinge("boom", "post", Y, (0, 0, height + 0.018), 0.7, -0.5)
 
 
 @kind(words="flipchart", width=(0.6, 0.75), height=(1.6, 1.9))
@@ -324,14 +316,14 @@ def desk_calendar(b: ObjectBuilder, size: float) -> None:
         [p.slab((x - 0.004, x + 0.004), 0.04, (0.01, 0.1)) for x in (-0.09, 0.09)],
         look="wood",
     )
-    b.bore("frame", p.cylinder(0.006, (-0.12, 0, 0.06), (0.12, 0, 0.06)))
+    b.bore("frame", p.cylinder(0.006, (-0.12, 0.12), 0, 0.06))
     for k, (a, b_) in enumerate(((-0.083, -0.032), (-0.028, 0.028), (0.032, 0.083))):
-        b.part(f"drum_{k}", p.cylinder(0.035, (a, 0, 0.06), (b_, 0, 0.06)), look="white")
-        b.cut(f"drum_{k}", p.cylinder(0.006, (-0.12, 0, 0.06), (0.12, 0, 0.06)))
+        b.part(f"drum_{k}", p.cylinder(0.035, (a, b_), 0, 0.06), look="white")
+        b.cut(f"drum_{k}", p.cylinder(0.006, (-0.12, 0.12), 0, 0.06))
         b.spin(f"drum_{k}", "frame", X, p(0, 0, 0.06))
     b.part(
         "frame",
-        p.cylinder(0.0045, (-0.094, 0, 0.06), (0.094, 0, 0.06)),
+        p.cylinder(0.0045, (-0.094, 0.094), 0, 0.06),
         [p.slab((s * 0.094, s * 0.098), 0.012, (0.048, 0.072)) for s in (-1, 1)],
     )
 
@@ -359,19 +351,14 @@ def film_clapper(b: ObjectBuilder, width: float) -> None:
 
 @kind(words="torch, pocket torch, pocket lamp, penlight", length=(0.12, 0.22))
 def flashlight(b: ObjectBuilder, length: float) -> None:
-    b.part(
-        "body",
-        b.cylinder(0.015, (0, 0, 0), (0, length, 0)),
-        b.cylinder(0.012, (0, -0.012, 0), (0, 0.01, 0)),
-        look="black metal",
-    )
+    b.part("body", b.cylinder(0.015, 0, (0, length), 0), b.cylinder(0.012, 0, (-0.012, 0.01), 0), look="black metal")
     b.cut(
         "body",
         slab(0.005, (0.4 * length, 0.4 * length + 0.03), (0.0115, 1)),
-        b.cylinder(0.0115, (0, 0.01, 0), (0, length - 0.01, 0)) if b.style.hollow else ball(0.001, (0, length / 2, 0)),
+        b.cylinder(0.0115, 0, (0.01, length - 0.01), 0) if b.style.hollow else ball(0.001, (0, length / 2, 0)),
     )
-    b.part("head", b.cone(0.018, 0.025, (0, -0.001, 0), (0, -0.05, 0)), look="grey metal")
-    b.cut("head", b.cylinder(0.0135, (0, 0.1, 0), (0, -0.02, 0)), b.cylinder(0.02, (0, -0.035, 0), (0, -0.1, 0)))
+    b.part("head", b.cone(0.018, 0.025, 0, (-0.001, -0.05), 0), look="grey metal")
+    b.cut("head", b.cylinder(0.0135, 0, (0.1, -0.02), 0), b.cylinder(0.02, 0, (-0.035, -0.1), 0))
     b.spin("head", "body", -Y, (0, 0, 0))
     b.part("switch", slab(0.004, (0.4 * length + 0.001, 0.4 * length + 0.016), (0.0123, 0.019)), look="red")
     b.slide("switch", "body", Y, 0.012)
@@ -387,11 +374,7 @@ def lantern(b: ObjectBuilder, radius: float, height: float) -> None:
         "base",
         b.cylinder(radius, 0, 0.25 * height),
         [
-            b.cylinder(
-                0.004,
-                (0.85 * radius * cos(a), 0.85 * radius * sin(a), 0.2 * height),
-                (0.85 * radius * cos(a), 0.85 * radius * sin(a), 0.9 * height),
-            )
+            b.cylinder(0.004, 0.85 * radius * cos(a), 0.85 * radius * sin(a), (0.2 * height, 0.9 * height))
             for a in (0.8, 2.36, 3.93, 5.5)
         ],
         b.cylinder(0.7 * radius, 0.25 * height, 0.88 * height),
@@ -427,15 +410,15 @@ def floor_lamp(b: ObjectBuilder, height: float) -> None:
         look="black steel",
     )
     b.part("arm", beam(0.012, 0.012, (-0.008, 0, height), (0.4, 0, height + 0.12), Y), look="black steel")
-    b.hinge("arm", "base", -Y, (0, 0, height), 0.6, lower=-0.25)
+    b.hinge("arm", "base", -Y, (0, 0, height), 0.6, -0.25)
     b.part(
         "head",
-        b.cone(0.09, 0.03, (0.4, 0, height - 0.05), (0.4, 0, height + 0.06)),
+        b.cone(0.09, 0.03, 0.4, 0, (height - 0.05, height + 0.06)),
         [box((0.39, s * 0.0085, height + 0.05), (0.41, s * 0.014, height + 0.13)) for s in (-1, 1)],
         look="white metal",
     )
-    b.cut("head", b.cone(0.085, 0.026, (0.4, 0, height - 0.055), (0.4, 0, height + 0.05)))
-    b.hinge("head", "arm", Y, (0.4, 0, height + 0.12), 0.5, lower=-0.5)
+    b.cut("head", b.cone(0.085, 0.026, 0.4, 0, (height - 0.055, height + 0.05)))
+    b.hinge("head", "arm", Y, (0.4, 0, height + 0.12), 0.5, -0.5)
 
 
 @kind(words="clamp lamp, clip on lamp", size=(0.9, 1.2))
@@ -454,12 +437,12 @@ def clip_lamp(b: ObjectBuilder, size: float) -> None:
     b.hinge("clip", "body", X, p(0, 0, -0.017), 0.25)
     b.part(
         "head",
-        p.cone(0.045, 0.02, (0, -0.09, 0.15), (0, -0.03, 0.15)),
+        p.cone(0.045, 0.02, 0, (-0.09, -0.03), 0.15),
         p.beam(0.012, 0.012, (0, -0.035, 0.15), (0, 0.004, 0.15)),
         look="black metal",
     )
-    b.cut("head", p.cone(0.042, 0.017, (0, -0.095, 0.15), (0, -0.04, 0.15)))
-    b.hinge("head", "body", X, p(0, 0, 0.15), 0.6, lower=-0.6)
+    b.cut("head", p.cone(0.042, 0.017, 0, (-0.095, -0.04), 0.15))
+    b.hinge("head", "body", X, p(0, 0, 0.15), 0.6, -0.6)
 
 
 @kind(words="game clock, chess timer", width=(0.16, 0.22))
@@ -468,7 +451,7 @@ def chess_clock(b: ObjectBuilder, width: float) -> None:
     b.part(
         "case",
         slab(w, 0.025, (0, 0.1)),
-        [b.cylinder(0.036, (s * w / 2, -0.029, 0.052), (s * w / 2, -0.024, 0.052)) for s in (-1, 1)],
+        [b.cylinder(0.036, s * w / 2, (-0.029, -0.024), 0.052) for s in (-1, 1)],
         [slab(0.012, (s * 0.015, s * 0.02), (0.098, 0.122)) for s in (-1, 1)],
         look="wood",
     )
@@ -478,11 +461,11 @@ def chess_clock(b: ObjectBuilder, width: float) -> None:
         [slab((s * 0.8 * w - 0.012, s * 0.8 * w + 0.012), 0.012, (0.118, 0.124)) for s in (-1, 1)],
         look="metal",
     )
-    b.hinge("rocker", "case", Y, (0, 0, 0.116), 0.12, lower=-0.12)
+    b.hinge("rocker", "case", Y, (0, 0, 0.116), 0.12, -0.12)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"hand_{k}",
-            b.cylinder(0.003, (s * w / 2, -0.03, 0.052), (s * w / 2, -0.034, 0.052)),
+            b.cylinder(0.003, s * w / 2, (-0.03, -0.034), 0.052),
             beam(0.003, 0.002, (s * w / 2, -0.032, 0.052), (s * w / 2, -0.032, 0.08)),
             look="black steel",
         )
@@ -505,7 +488,7 @@ def drafting_table(b: ObjectBuilder, width: float, depth: float) -> None:
         [slab((s * 0.4 * width - 0.05, s * 0.4 * width - 0.025), 0.03, (0.72, 0.751)) for s in (-1, 1)],
         look="white wood",
     )
-    b.hinge("board", "frame", X, (0, 0, 0.715), 1.0, lower=0)
+    b.hinge("board", "frame", X, (0, 0, 0.715), 1.0, 0)
 
 
 @kind(words="pulpit, speaker desk, podium", height=(0.95, 1.2))
@@ -526,7 +509,7 @@ def lectern(b: ObjectBuilder, height: float) -> None:
         slab(0.028, 0.02, (height + 0.02, height + 0.086)),
         look="wood",
     )
-    b.hinge("desk", "post", X, (0, 0, height + 0.035), 0.5, lower=0)
+    b.hinge("desk", "post", X, (0, 0, height + 0.035), 0.5, 0)
 
 
 @kind(words="comb binder", width=(0.32, 0.42))
@@ -545,10 +528,10 @@ def binding_machine(b: ObjectBuilder, width: float) -> None:
         "lever",
         slab(width / 2 - 0.014, (0.015, 0.04), (0.13, 0.15)),
         [beam(0.02, 0.012, (s * 0.42 * width, 0.028, 0.14), (s * 0.42 * width, -0.05, 0.3), X) for s in (-1, 1)],
-        b.cylinder(0.012, (-0.43 * width, -0.05, 0.3), (0.43 * width, -0.05, 0.3)),
+        b.cylinder(0.012, (-0.43 * width, 0.43 * width), -0.05, 0.3),
         look="steel",
     )
-    b.hinge("lever", "body", X, (0, 0.028, 0.14), 0.9, lower=0)
+    b.hinge("lever", "body", X, (0, 0.028, 0.14), 0.9, 0)
 
 
 @kind(words="welding helmet, motorcycle helmet, helmet with visor, knight helmet, face shield", size=(0.9, 1.1))
@@ -579,7 +562,7 @@ def tablet_stand(b: ObjectBuilder, size: float) -> None:
         look="metal",
     )
     b.part("arm", p.beam(0.03, 0.01, (0, 0.035, 0.035), (0, 0, 0.14)), look="metal")
-    b.hinge("arm", "base", X, p(0, 0.035, 0.035), 0.5, lower=-0.4)
+    b.hinge("arm", "base", X, p(0, 0.035, 0.035), 0.5, -0.4)
     b.part(
         "back",
         p.slab(0.07, (-0.015, -0.009), (0.1, 0.22)),
@@ -587,7 +570,7 @@ def tablet_stand(b: ObjectBuilder, size: float) -> None:
         [p.box((s * 0.017, -0.01, 0.125), (s * 0.022, 0.008, 0.15)) for s in (-1, 1)],
         look="metal",
     )
-    b.hinge("back", "arm", X, p(0, 0, 0.14), 0.25, lower=-0.4)
+    b.hinge("back", "arm", X, p(0, 0, 0.14), 0.25, -0.4)
 
 
 @kind(words="door phone, doorbell, door bell button, entry phone", number=whole(1, 5, words="button"))
@@ -596,11 +579,7 @@ def intercom(b: ObjectBuilder, number: int) -> None:
     b.part(
         "panel",
         slab(0.05, (0, 0.02), (0, height)),
-        [
-            b.cylinder(0.004, (x, -0.001, height - 0.03 - 0.01 * k), (x, 0.001, height - 0.03 - 0.01 * k))
-            for x in (-0.015, 0, 0.015)
-            for k in range(3)
-        ],
+        [b.cylinder(0.004, x, (-0.001, 0.001), height - 0.03 - 0.01 * k) for x in (-0.015, 0, 0.015) for k in range(3)],
         look="steel",
     )
     for k, z in enumerate(spread(number, 0.02, height - 0.07)):
@@ -636,11 +615,11 @@ def work_light(b: ObjectBuilder, height: float) -> None:
     b.part(
         "head",
         slab(0.15, (-0.05, 0.03), (height + 0.03, height + 0.2)),
-        [b.cylinder(0.006, (s * 0.149, 0, height + 0.11), (s * 0.16, 0, height + 0.11)) for s in (-1, 1)],
+        [b.cylinder(0.006, (s * 0.149, s * 0.16), 0, height + 0.11) for s in (-1, 1)],
         look="black metal",
     )
     b.cut("head", slab(0.14, (-0.1, -0.03), (height + 0.04, height + 0.19)))
-    b.hinge("head", "stand", X, (0, 0, height + 0.11), 0.5, lower=-0.9)
+    b.hinge("head", "stand", X, (0, 0, height + 0.11), 0.5, -0.9)
 
 
 @kind(
@@ -656,14 +635,14 @@ def iris(b: ObjectBuilder, blades: int, size: float) -> None:
     p = b.sized(size)
     top = 0.007 + 0.0012 * blades
     b.part("base", p.tube(0.06, 0.036, 0, 0.004), p.tube(0.06, 0.057, 0, top), look="black metal")
-    b.part("ring", p.tube(0.066, 0.0605, 0, top), p.rod(0.003, (0.067, 0, top / 2), (0.085, 0, top / 2)), look="metal")
+    b.part("ring", p.tube(0.066, 0.0605, 0, top), p.rod(0.003, (0.067, 0.085), 0, top / 2), look="metal")
     b.hinge("ring", "base", Z, (0, 0, 0), 1.0)
     for k in range(blades):
         a, z, name = 2 * pi * k / blades, 0.0046 + 0.0012 * k, f"blade_{k + 1}"
         x, y = 0.05 * cos(a), 0.05 * sin(a)
         arc = [(0.041 * cos(a + t), 0.041 * sin(a + t), 0.0055) for t in (0.5, 0.9, 1.3, 1.6)]
-        b.part("base", p.cylinder(0.0015, (x, y, 0.003), (x, y, z + 0.001)))
+        b.part("base", p.cylinder(0.0015, x, y, (0.003, z + 0.001)))
         b.part(name, p.strip([(x, y, 0.004), *arc], z, z + 0.0008), look="steel")
-        b.cut(name, p.cylinder(0.002, (x, y, 0), (x, y, 1)))
+        b.cut(name, p.cylinder(0.002, x, y, (0, 1)))
         b.hinge(name, "base", Z, p(x, y, z), 0.72)
         b.follow(name, "ring", 0.72)

@@ -127,10 +127,10 @@ def gate(b: ObjectBuilder, width: float, height: float, leaves: int, pickets: in
     b.part(last, b.painted(*guides, material="steel"))
     b.part(
         "bolt",
-        b.cylinder(0.007, (end + s * 0.05, -0.04, level), (end - s * 0.2, -0.04, level)),
-        b.cylinder(0.005, (here + s * 0.105, -0.04, level), (here + s * 0.105, -0.08, level)),
+        b.cylinder(0.007, (end + s * 0.05, end - s * 0.2), -0.04, level),
+        b.cylinder(0.005, here + s * 0.105, (-0.04, -0.08), level),
         look="steel",
     )
     for name in (last, "posts"):
-        b.cut(name, b.cylinder(0.009, (end - s * 0.17, -0.04, level), (end + s * 0.06, -0.04, level)))
+        b.cut(name, b.cylinder(0.009, (end - s * 0.17, end + s * 0.06), -0.04, level))
     b.slide("bolt", last, -s * X, 0.06)

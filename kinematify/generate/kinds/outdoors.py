@@ -20,8 +20,8 @@ def swing_seat(b: ObjectBuilder, width: float) -> None:
     b.part(
         "frame",
         [b.rod(0.025, (s * (w + 0.2), 0, 1.7), (s * (w + 0.2), t * 0.6, 0.03)) for s in (-1, 1) for t in (-1, 1)],
-        b.rod(0.025, (-w - 0.2, 0, 1.7), (w + 0.2, 0, 1.7)),
-        [b.rod(0.02, (s * (w + 0.2), -0.6, 0.03), (s * (w + 0.2), 0.6, 0.03)) for s in (-1, 1)],
+        b.rod(0.025, (-w - 0.2, w + 0.2), 0, 1.7),
+        [b.rod(0.02, s * (w + 0.2), (-0.6, 0.6), 0.03) for s in (-1, 1)],
         look="green steel",
     )
     b.part(
@@ -32,14 +32,14 @@ def swing_seat(b: ObjectBuilder, width: float) -> None:
         [b.torus(0.042, 0.008, (s * (w - 0.03), 0, 1.7), X) for s in (-1, 1)],
         look="wood",
     )
-    b.hinge("seat", "frame", X, (0, 0, 1.7), 0.35, lower=-0.35)
+    b.hinge("seat", "frame", X, (0, 0, 1.7), 0.35, -0.35)
     b.part(
         "canopy",
         slab(w + 0.2, 0.6, (1.78, 1.8)),
         [slab((s * (w + 0.1) - 0.02, s * (w + 0.1) + 0.02), 0.02, (1.732, 1.79)) for s in (-1, 1)],
         look="green",
     )
-    b.hinge("canopy", "frame", X, (0, 0, 1.74), 0.25, lower=-0.25)
+    b.hinge("canopy", "frame", X, (0, 0, 1.74), 0.25, -0.25)
 
 
 @kind(
@@ -54,18 +54,18 @@ def pull_along_duck(b: ObjectBuilder, size: float) -> None:
     b.part(
         "body",
         p.slab((-0.08, 0.07), 0.03, (0.03, 0.1)),
-        p.cylinder(0.03, (0.06, -0.028, 0.075), (0.06, 0.028, 0.075)),
+        p.cylinder(0.03, 0.06, (-0.028, 0.028), 0.075),
         p.slab((0.03, 0.06), 0.02, (0.09, 0.13)),
         p.beam(0.04, 0.05, (-0.07, 0, 0.09), (-0.11, 0, 0.12), Y),
         look="yellow wood",
     )
     b.part(
         "head",
-        p.cylinder(0.03, (0.05, -0.02, 0.165), (0.05, 0.02, 0.165)),
+        p.cylinder(0.03, 0.05, (-0.02, 0.02), 0.165),
         p.cone(0.014, 0.004, (0.075, 0, 0.16), (0.11, 0, 0.158)),
         look="yellow wood",
     )
-    b.hinge("head", "body", Y, p(0.045, 0, 0.135), 0.25, lower=-0.1)
+    b.hinge("head", "body", Y, p(0.045, 0, 0.135), 0.25, -0.1)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"wing_{k + 1}",
@@ -74,11 +74,7 @@ def pull_along_duck(b: ObjectBuilder, size: float) -> None:
         )
         b.hinge(f"wing_{k + 1}", "body", s * X, p(0, s * 0.034, 0.095), 1.2)
         for j, x in enumerate((-0.05, 0.045)):
-            b.part(
-                f"wheel_{2 * k + j + 1}",
-                p.cylinder(0.025, (x, s * 0.034, 0.025), (x, s * 0.046, 0.025)),
-                look="red wood",
-            )
+            b.part(f"wheel_{2 * k + j + 1}", p.cylinder(0.025, x, (s * 0.034, s * 0.046), 0.025), look="red wood")
             b.spin(f"wheel_{2 * k + j + 1}", "body", Y, p(x, 0, 0.025))
 
 
@@ -127,44 +123,35 @@ def dumbwaiter(b: ObjectBuilder, height: float) -> None:
 )
 def cherry_picker(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
-    b.part(
-        "chassis",
-        p.slab(1.2, 0.55, (0.35, 0.7)),
-        p.cylinder(0.3, (-0.6, 0, 0.69), (-0.6, 0, 0.78)),
-        look="yellow steel",
-    )
+    b.part("chassis", p.slab(1.2, 0.55, (0.35, 0.7)), p.cylinder(0.3, -0.6, 0, (0.69, 0.78)), look="yellow steel")
     for k, s in enumerate((-1, 1)):
         for j, x in enumerate((-0.8, 0.8)):
-            b.part(
-                f"wheel_{2 * k + j + 1}",
-                p.cylinder(0.32, (x, s * 0.551, 0.32), (x, s * 0.78, 0.32)),
-                look="black rubber",
-            )
+            b.part(f"wheel_{2 * k + j + 1}", p.cylinder(0.32, x, (s * 0.551, s * 0.78), 0.32), look="black rubber")
             b.spin(f"wheel_{2 * k + j + 1}", "chassis", Y, p(x, 0, 0.32))
     b.part(
         "turntable",
-        p.cylinder(0.35, (-0.6, 0, 0.79), (-0.6, 0, 0.88)),
+        p.cylinder(0.35, -0.6, 0, (0.79, 0.88)),
         [p.box((-0.75, s * 0.2 - 0.03, 0.87), (-0.45, s * 0.2 + 0.03, 1.25)) for s in (-1, 1)],
         look="grey steel",
     )
     b.spin("turntable", "chassis", Z, p(-0.6, 0, 0))
     b.part("lower_boom", p.beam(0.2, 0.2, (-0.6, 0, 1.15), (1.0, 0, 1.75), Y), look="yellow steel")
-    b.hinge("lower_boom", "turntable", -Y, p(-0.6, 0, 1.15), 0.9, lower=-0.2)
+    b.hinge("lower_boom", "turntable", -Y, p(-0.6, 0, 1.15), 0.9, -0.2)
     b.part(
         "upper_boom",
         p.beam(0.14, 0.12, (1.0, 0.19, 1.75), (-0.9, 0.19, 2.2), Y),
-        p.cylinder(0.05, (0.98, 0.1, 1.745), (0.98, 0.15, 1.745)),
+        p.cylinder(0.05, 0.98, (0.1, 0.15), 1.745),
         look="yellow steel",
     )
-    b.hinge("upper_boom", "lower_boom", Y, p(1.0, 0.19, 1.75), 2.0, lower=-0.15)
+    b.hinge("upper_boom", "lower_boom", Y, p(1.0, 0.19, 1.75), 2.0, -0.15)
     b.part(
         "basket",
         tray(p(-1.58, -0.1, 1.75), p(-1.0, 0.7, 2.4), 0.03 * size),
-        p.cylinder(0.04, (-0.9, 0.251, 2.2), (-0.9, 0.32, 2.2)),
+        p.cylinder(0.04, -0.9, (0.251, 0.32), 2.2),
         p.box((-1.01, 0.28, 2.17), (-0.88, 0.32, 2.23)),
         look="grey steel",
     )
-    b.hinge("basket", "upper_boom", -Y, p(-0.9, 0.25, 2.2), 1.0, lower=-1.0)
+    b.hinge("basket", "upper_boom", -Y, p(-0.9, 0.25, 2.2), 1.0, -1.0)
 
 
 @kind(words="ship's capstan, anchor capstan", part_words={"drum": "barrel, head", "bar": "lever"}, size=(0.7, 1.3))
@@ -195,18 +182,18 @@ def porthole(b: ObjectBuilder, radius: float) -> None:
     p = b.sized(r)
     b.part(
         "frame",
-        p.tube(1.35, 0.95, (0, 0, 0), (0, 0.12, 0)),
+        p.tube(1.35, 0.95, 0, (0, 0.12), 0),
         [
             box((-1.45 * r, -0.22 * r, s * 0.3 * r - 0.07 * r), (-1.2 * r, 0.05 * r, s * 0.3 * r + 0.07 * r))
             for s in (-1, 1)
         ],
         look="brass",
     )
-    b.bore("frame", p.cylinder(0.05, (-1.33, -0.12, -1), (-1.33, -0.12, 1)))
+    b.bore("frame", p.cylinder(0.05, -1.33, -0.12, (-1, 1)))
     b.part(
         "window",
-        p.cylinder(1.12, (0, -0.18, 0), (0, -0.04, 0)),
-        p.cylinder(0.04, (-1.33, -0.12, -0.36), (-1.33, -0.12, 0.36)),
+        p.cylinder(1.12, 0, (-0.18, -0.04), 0),
+        p.cylinder(0.04, -1.33, -0.12, (-0.36, 0.36)),
         p.slab((-1.33, -1.0), (-0.16, -0.08), 0.2),
         look="glass",
     )
@@ -214,7 +201,7 @@ def porthole(b: ObjectBuilder, radius: float) -> None:
     for k, s in enumerate((-1, 1)):
         b.part(
             f"dog_{k + 1}",
-            p.cylinder(0.06, (0.95, -0.3, s * 0.82), (0.95, -0.005, s * 0.82)),
+            p.cylinder(0.06, 0.95, (-0.3, -0.005), s * 0.82),
             box((0.88 * r, -0.3 * r, s * 0.82 * r - 0.25 * r), (1.02 * r, -0.22 * r, s * 0.82 * r + 0.05 * r)),
             look="brass",
         )
@@ -229,7 +216,7 @@ def puppet_theatre(b: ObjectBuilder, width: float) -> None:
         slab(w, (0, 0.3), (0, 0.4 * width)),
         [box((x - 0.07 * w, 0, 0.3 * width), (x + 0.07 * w, 0.03, 1.1 * width)) for x in (-0.93 * w, 0.93 * w)],
         slab(w, (0, 0.03), (0.95 * width, 1.2 * width)),
-        b.cylinder(0.008, (-0.9 * w, 0.05, 0.97 * width), (0.9 * w, 0.05, 0.97 * width)),
+        b.cylinder(0.008, (-0.9 * w, 0.9 * w), 0.05, 0.97 * width),
         [box((x - 0.03, 0.02, 0.96 * width), (x + 0.03, 0.06, 0.985 * width)) for x in (-0.95 * w, 0.95 * w)],
         look="wood",
     )
@@ -254,13 +241,13 @@ def dish_rack(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
         "rack",
-        [b.rod(0.004, (s * w, -0.15, 0.06), (s * w, 0.15, 0.06)) for s in (-1, 1)],
-        [b.rod(0.004, (-w, t * 0.15, 0.06), (w, t * 0.15, 0.06)) for t in (-1, 1)],
-        [b.rod(0.004, (s * w, t * 0.15, 0.004), (s * w, t * 0.15, 0.17)) for s in (-1, 1) for t in (-1, 1)],
-        [b.rod(0.003, (x, -0.15, 0.06), (x, 0.15, 0.06)) for x in spread(9, -w + 0.03, w - 0.03)],
-        [b.rod(0.003, (x, 0.05, 0.06), (x, 0.05, 0.15)) for x in spread(9, -w + 0.03, w - 0.03)],
-        [b.rod(0.004, (-w, t * 0.15, 0.17), (w, t * 0.15, 0.17)) for t in (-1, 1)],
-        [b.rod(0.004, (s * w, -0.15, 0.012), (s * w, 0.15, 0.012)) for s in (-1, 1)],
+        [b.rod(0.004, s * w, (-0.15, 0.15), 0.06) for s in (-1, 1)],
+        [b.rod(0.004, (-w, w), t * 0.15, 0.06) for t in (-1, 1)],
+        [b.rod(0.004, s * w, t * 0.15, (0.004, 0.17)) for s in (-1, 1) for t in (-1, 1)],
+        [b.rod(0.003, x, (-0.15, 0.15), 0.06) for x in spread(9, -w + 0.03, w - 0.03)],
+        [b.rod(0.003, x, 0.05, (0.06, 0.15)) for x in spread(9, -w + 0.03, w - 0.03)],
+        [b.rod(0.004, (-w, w), t * 0.15, 0.17) for t in (-1, 1)],
+        [b.rod(0.004, s * w, (-0.15, 0.15), 0.012) for s in (-1, 1)],
         look="steel",
     )
     b.part("tray", tray((-w + 0.006, -0.16, 0.017), (w - 0.006, 0.14, 0.045), 0.003), look="grey")
@@ -275,18 +262,13 @@ def dish_rack(b: ObjectBuilder, width: float) -> None:
 def bread_slicer(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part("body", p.slab(0.16, 0.18, (0, 0.03)), p.slab((0.02, 0.12), 0.05, (0.025, 0.2)), look="white metal")
-    b.bore("body", p.cylinder(0.012, (-1, 0, 0.15), (1, 0, 0.15)))
-    b.part(
-        "blade",
-        p.cylinder(0.1, (0.008, 0, 0.15), (0.012, 0, 0.15)),
-        p.cylinder(0.01, (0.01, 0, 0.15), (0.16, 0, 0.15)),
-        look="steel",
-    )
+    b.bore("body", p.cylinder(0.012, (-1, 1), 0, 0.15))
+    b.part("blade", p.cylinder(0.1, (0.008, 0.012), 0, 0.15), p.cylinder(0.01, (0.01, 0.16), 0, 0.15), look="steel")
     b.spin("blade", "body", X, p(0, 0, 0.15))
     b.part(
         "crank",
         p.beam(0.02, 0.012, (0.168, 0, 0.15), (0.168, 0, 0.06), X),
-        p.rod(0.009, (0.17, 0, 0.06), (0.23, 0, 0.06)),
+        p.rod(0.009, (0.17, 0.23), 0, 0.06),
         look="metal",
     )
     b.fix("crank", "blade")
@@ -306,18 +288,13 @@ def bread_slicer(b: ObjectBuilder, size: float) -> None:
 )
 def laboratory_stirrer(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
-    b.part(
-        "stand",
-        p.slab(0.12, (-0.16, 0.12), (0, 0.02)),
-        p.cylinder(0.009, (0, 0.08, 0.015), (0, 0.08, 0.7)),
-        look="steel",
-    )
+    b.part("stand", p.slab(0.12, (-0.16, 0.12), (0, 0.02)), p.cylinder(0.009, 0, 0.08, (0.015, 0.7)), look="steel")
     b.part("head", p.slab(0.05, 0.1, (0.46, 0.56)), look="white")
-    b.bore("head", p.cylinder(0.0098, (0, 0.08, 0), (0, 0.08, 1)), p.cylinder(0.006, (0, -0.04, 0.4), (0, -0.04, 0.52)))
+    b.bore("head", p.cylinder(0.0098, 0, 0.08, (0, 1)), p.cylinder(0.006, 0, -0.04, (0.4, 0.52)))
     b.slide("head", "stand", Z, 0.13, lower=-0.1)
     b.part(
         "paddle",
-        p.cylinder(0.005, (0, -0.04, 0.17), (0, -0.04, 0.51)),
+        p.cylinder(0.005, 0, -0.04, (0.17, 0.51)),
         [p.box((s * 0.02 - 0.018, -0.042, 0.17), (s * 0.02 + 0.018, -0.038, 0.2)) for s in (-1, 1)],
         look="steel",
     )

@@ -49,7 +49,7 @@ def crossbow(b: ObjectBuilder, size: float) -> None:
     )
     b.bore("stock", p.slab(0.008, (0.09, 0.16), (-0.1, 0.03)), p.slab(0.01, (-0.38, 0.15), (0.03, 0.1)))
     b.part("trigger", p.beam(0.012, 0.01, (0, 0.12, 0.02), (0, 0.14, -0.06), Y), look="steel")
-    b.hinge("trigger", "stock", X, p(0, 0.12, 0.02), 0.1, lower=-0.2)
+    b.hinge("trigger", "stock", X, p(0, 0.12, 0.02), 0.1, -0.2)
     b.part("slide", p.slab(0.009, (-0.1, -0.06), (0.031, 0.06)), look="steel")
     b.slide("slide", "stock", Y, 0.15, lower=-0.2)
 
@@ -58,22 +58,22 @@ def crossbow(b: ObjectBuilder, size: float) -> None:
 def fishing_rod(b: ObjectBuilder, length: float) -> None:
     b.part(
         "rod",
-        b.cylinder(0.013, (0, 0.25, 0), (0, -0.2, 0)),
-        b.cylinder(0.007, (0, -0.19, 0), (0, -length, 0)),
+        b.cylinder(0.013, 0, (0.25, -0.2), 0),
+        b.cylinder(0.007, 0, (-0.19, -length), 0),
         slab(0.012, 0.03, (-0.05, -0.01)),
         [slab((s * 0.026, s * 0.022), 0.03, (-0.1, -0.04)) for s in (-1, 1)],
         slab(0.026, 0.03, (-0.052, -0.045)),
         look="black",
     )
-    b.bore("rod", b.cylinder(0.0055, (0, 1, 0), (0, -2, 0)), b.cylinder(0.0045, (-0.05, 0, -0.075), (0.05, 0, -0.075)))
-    b.part("tip", b.cylinder(0.004, (0, -0.3, 0), (0, -length - 0.1, 0)), look="red")
+    b.bore("rod", b.cylinder(0.0055, 0, (1, -2), 0), b.cylinder(0.0045, (-0.05, 0.05), 0, -0.075))
+    b.part("tip", b.cylinder(0.004, 0, (-0.3, -length - 0.1), 0), look="red")
     b.slide("tip", "rod", -Y, 0.6 * length - 0.2)
     b.part(
         "spool",
-        b.cylinder(0.0035, (-0.02, 0, -0.075), (0.05, 0, -0.075)),
-        b.cylinder(0.018, (-0.02, 0, -0.075), (0.02, 0, -0.075)),
+        b.cylinder(0.0035, (-0.02, 0.05), 0, -0.075),
+        b.cylinder(0.018, (-0.02, 0.02), 0, -0.075),
         beam(0.008, 0.005, (0.045, 0, -0.075), (0.045, 0, -0.125), X),
-        b.cylinder(0.006, (0.043, 0, -0.12), (0.07, 0, -0.12)),
+        b.cylinder(0.006, (0.043, 0.07), 0, -0.12),
         look="metal",
     )
     b.spin("spool", "rod", X, (0, 0, -0.075))
@@ -88,22 +88,22 @@ def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
         p.slab(0.25, (0.6, 0.7), (0, 0.06)),
         p.slab(0.04, 0.65, (0.02, 0.09)),
         p.beam(0.08, 0.08, (0, -0.5, 0.05), (0, -0.4, 1.4), X),
-        p.cylinder(0.02, (-0.28, -0.44, 0.85), (0.28, -0.44, 0.85)),
+        p.cylinder(0.02, (-0.28, 0.28), -0.44, 0.85),
         p.slab(0.15, (-0.5, -0.4), (1.35, 1.55)),
-        p.cylinder(0.3, (-0.06, 0.45, 0.4), (0.06, 0.45, 0.4)),
+        p.cylinder(0.3, (-0.06, 0.06), 0.45, 0.4),
         p.slab(0.06, (0.4, 0.5), (0.05, 0.3)),
         look="black",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
             f"handle_{k}",
-            p.tube(0.035, 0.0225, (s * 0.2, -0.44, 0.85), (s * 0.25, -0.44, 0.85)),
+            p.tube(0.035, 0.0225, (s * 0.2, s * 0.25), -0.44, 0.85),
             p.beam(0.03, 0.03, (s * 0.225, -0.44, 0.88), (s * 0.225, -0.3, 1.5), X),
             p.beam(0.03, 0.03, (s * 0.225, -0.44, 0.82), (s * 0.225, -0.4, 0.25), X),
             p.box((s * 0.12, -0.45, 0.18), (s * 0.24, 0, 0.25)),
             look="grey steel",
         )
-        b.hinge(f"handle_{k}", "frame", X, p(0, -0.44, 0.85), 0.25, lower=-0.25)
+        b.hinge(f"handle_{k}", "frame", X, p(0, -0.44, 0.85), 0.25, -0.25)
 
 
 @kind(words="bench press, training bench", size=(0.9, 1.1))
@@ -125,8 +125,8 @@ def weight_bench(b: ObjectBuilder, size: float) -> None:
     b.hinge("back", "frame", X, p(0, -0.19, 0.42), 0.9)
     b.part(
         "bar",
-        p.cylinder(0.014, (-0.7, 0.63, 0.966), (0.7, 0.63, 0.966)),
-        [p.cylinder(0.18, (s * 0.55, 0.63, 0.966), (s * 0.61, 0.63, 0.966)) for s in (-1, 1)],
+        p.cylinder(0.014, (-0.7, 0.7), 0.63, 0.966),
+        [p.cylinder(0.18, (s * 0.55, s * 0.61), 0.63, 0.966) for s in (-1, 1)],
         look="steel",
     )
     b.slide("bar", "frame", Z, 0.3)
@@ -135,10 +135,8 @@ def weight_bench(b: ObjectBuilder, size: float) -> None:
 @kind("dart board cabinet", width=(0.45, 0.6))
 def dartboard_cabinet(b: ObjectBuilder, width: float) -> None:
     w = width / 2
-    b.part(
-        "cabinet", slab(w, (0, 0.05), (0, width)), b.cylinder(0.42 * width, (0, -0.02, w), (0, 0.01, w)), look="wood"
-    )
-    b.cut("cabinet", b.cylinder(0.36 * width, (0, -1, w), (0, -0.016, w)))
+    b.part("cabinet", slab(w, (0, 0.05), (0, width)), b.cylinder(0.42 * width, 0, (-0.02, 0.01), w), look="wood")
+    b.cut("cabinet", b.cylinder(0.36 * width, 0, (-1, -0.016), w))
     for k, s in enumerate((-1, 1)):
         b.part(f"door_{k}", box((s * 0.002, -0.045, 0), (s * w, -0.03, width)), look="wood")
         b.part("cabinet", box((s * w, -0.028, 0), (s * (w - 0.02), 0.01, width)))
@@ -167,19 +165,19 @@ def pinball_machine(b: ObjectBuilder, width: float, length: float) -> None:
     b.part(
         "cabinet",
         [
-            b.cylinder(0.03, (x, y, 0.855), (x, y, 0.9))
+            b.cylinder(0.03, x, y, (0.855, 0.9))
             for x, y in ((0, 0.6 * length), (-0.1, 0.5 * length), (0.1, 0.5 * length))
         ],
-        [b.cylinder(0.005, (s * 0.1, 0.14, 0.85), (s * 0.1, 0.14, 0.885)) for s in (-1, 1)],
+        [b.cylinder(0.005, s * 0.1, 0.14, (0.85, 0.885)) for s in (-1, 1)],
     )
     for k, s in enumerate((-1, 1)):
         b.part(
             f"flipper_{k}",
-            b.cylinder(0.014, (s * 0.1, 0.14, 0.862), (s * 0.1, 0.14, 0.882)),
+            b.cylinder(0.014, s * 0.1, 0.14, (0.862, 0.882)),
             beam(0.018, 0.018, (s * 0.1, 0.14, 0.872), (s * 0.035, 0.115, 0.872)),
             look="yellow",
         )
-        b.cut(f"flipper_{k}", b.cylinder(0.0065, (s * 0.1, 0.14, 0), (s * 0.1, 0.14, 2)))
+        b.cut(f"flipper_{k}", b.cylinder(0.0065, s * 0.1, 0.14, (0, 2)))
         b.hinge(f"flipper_{k}", "cabinet", s * -Z, (s * 0.1, 0.14, 0), 0.8)
         button(b, f"button_{k}", "cabinet", (s * w, 0.1, 0.85 - 0.02), (0.024, 0.024), 0.008, s * X, is_round=True)
     plunger(b, "plunger", "cabinet", (w - 0.06, -0.06, 0.8), (w - 0.06, 0.045, 0.8), 0.008, travel=0.05)
@@ -218,7 +216,7 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
     at = vector(-0.25 * width, -0.22, 1.1029)
     b.bore("cabinet", b.cone(0.012, 0.026, at - 0.03 * up, at + 0.001 * up))
     b.part("joystick", b.cylinder(0.005, at - 0.025 * up, at + 0.06 * up), ball(0.018, at + 0.07 * up), look="red")
-    b.hinge("joystick", "cabinet", X, at - 0.02 * up, 0.25, lower=-0.25)
+    b.hinge("joystick", "cabinet", X, at - 0.02 * up, 0.25, -0.25)
     for k in range(number):
         b_ = vector(0.02 + 0.06 * (k % 3), -0.26 + 0.06 * (k // 3), 1.1029 + (-0.04 + 0.06 * (k // 3)) * 0.5714)
         b.bore("cabinet", b.cylinder(0.0165, b_ - 0.02 * up, b_ + 0.05 * up))
@@ -289,21 +287,21 @@ def trumpet(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
         "body",
-        p.cylinder(0.006, (-0.25, 0, 0.05), (0.15, 0, 0.05)),
-        p.cone(0.006, 0.06, (0.1, 0, 0.05), (0.3, 0, 0.05)),
-        [p.cylinder(0.011, (x, 0, -0.04), (x, 0, 0.08)) for x in (-0.03, 0, 0.03)],
-        p.cylinder(0.006, (-0.15, 0, -0.02), (0.15, 0, -0.02)),
+        p.cylinder(0.006, (-0.25, 0.15), 0, 0.05),
+        p.cone(0.006, 0.06, (0.1, 0.3), 0, 0.05),
+        [p.cylinder(0.011, x, 0, (-0.04, 0.08)) for x in (-0.03, 0, 0.03)],
+        p.cylinder(0.006, (-0.15, 0.15), 0, -0.02),
         [p.beam(0.01, 0.01, (x, 0, -0.022), (x, 0, 0.052), X) for x in (-0.15, 0.15)],
-        p.cone(0.012, 0.006, (-0.28, 0, 0.05), (-0.245, 0, 0.05)),
+        p.cone(0.012, 0.006, (-0.28, -0.245), 0, 0.05),
         look="brass",
     )
-    b.cut("body", p.cone(0.004, 0.056, (0.12, 0, 0.05), (0.301, 0, 0.05)))
+    b.cut("body", p.cone(0.004, 0.056, (0.12, 0.301), 0, 0.05))
     for k, x in enumerate((-0.03, 0, 0.03)):
-        b.cut("body", p.cylinder(0.0075, (x, 0, 0.055), (x, 0, 0.1)))
+        b.cut("body", p.cylinder(0.0075, x, 0, (0.055, 0.1)))
         b.part(
             f"valve_{k}",
-            p.cylinder(0.006, (x, 0, 0.073), (x, 0, 0.098)),
-            p.cylinder(0.0095, (x, 0, 0.097), (x, 0, 0.101)),
+            p.cylinder(0.006, x, 0, (0.073, 0.098)),
+            p.cylinder(0.0095, x, 0, (0.097, 0.101)),
             look="chrome",
         )
         b.slide(f"valve_{k}", "body", -Z, 0.014)
@@ -314,37 +312,33 @@ def trombone(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
         "horn",
-        [p.cylinder(0.006, (0, y, 0), (-0.7, y, 0)) for y in (-0.05, 0.05)],
-        p.cylinder(0.006, (-0.02, -0.052, 0), (-0.02, 0.052, 0)),
-        p.cylinder(0.008, (0, 0.05, 0), (0.35, 0.05, 0)),
-        p.cylinder(0.008, (0.35, 0.046, 0), (0.35, 0.154, 0)),
-        p.cylinder(0.008, (0.35, 0.15, 0), (0, 0.15, 0)),
-        p.cone(0.008, 0.09, (0.01, 0.15, 0), (-0.4, 0.15, 0)),
-        p.cone(0.01, 0.006, (0.04, -0.05, 0), (-0.01, -0.05, 0)),
+        [p.cylinder(0.006, (0, -0.7), y, 0) for y in (-0.05, 0.05)],
+        p.cylinder(0.006, -0.02, (-0.052, 0.052), 0),
+        p.cylinder(0.008, (0, 0.35), 0.05, 0),
+        p.cylinder(0.008, 0.35, (0.046, 0.154), 0),
+        p.cylinder(0.008, (0.35, 0), 0.15, 0),
+        p.cone(0.008, 0.09, (0.01, -0.4), 0.15, 0),
+        p.cone(0.01, 0.006, (0.04, -0.01), -0.05, 0),
         look="brass",
     )
-    b.cut("horn", p.cone(0.006, 0.087, (0, 0.15, 0), (-0.401, 0.15, 0)))
+    b.cut("horn", p.cone(0.006, 0.087, (0, -0.401), 0.15, 0))
     b.part(
         "slide",
-        [p.tube(0.0095, 0.0075, (-0.08, y, 0), (-0.75, y, 0)) for y in (-0.05, 0.05)],
-        p.cylinder(0.009, (-0.75, -0.058, 0), (-0.75, 0.058, 0)),
+        [p.tube(0.0095, 0.0075, (-0.08, -0.75), y, 0) for y in (-0.05, 0.05)],
+        p.cylinder(0.009, -0.75, (-0.058, 0.058), 0),
         p.beam(0.008, 0.006, (-0.1, -0.042, 0), (-0.1, 0.042, 0)),
         look="brass",
     )
     b.slide("slide", "horn", -X, 0.5)
 
 
-@kind(
-    words="acoustic guitar, ukulele, bass guitar",
-    size=(0.5, 1.0),
-    number=whole(4, 6, words="peg, string, tuner"),
-)
+@kind(words="acoustic guitar, ukulele, bass guitar", size=(0.5, 1.0), number=whole(4, 6, words="peg, string, tuner"))
 def guitar(b: ObjectBuilder, size: float, number: int) -> None:
     p = b.sized(size)
     b.part(
         "body",
         p.cylinder(0.19, -0.05, 0.05),
-        p.cylinder(0.145, (0, 0.23, -0.05), (0, 0.23, 0.05)),
+        p.cylinder(0.145, 0, 0.23, (-0.05, 0.05)),
         p.slab(0.03, (0.3, 0.75), (0.02, 0.06)),
         p.slab(0.045, (0.74, 0.92), (0.015, 0.045)),
         p.slab(0.07, (-0.08, -0.05), (0.049, 0.062)),
@@ -353,8 +347,8 @@ def guitar(b: ObjectBuilder, size: float, number: int) -> None:
     b.cut(
         "body",
         p.cylinder(0.18, -0.044, 0.044),
-        p.cylinder(0.135, (0, 0.23, -0.044), (0, 0.23, 0.044)),
-        p.cylinder(0.055, (0, 0.16, 0), (0, 0.16, 0.052)),
+        p.cylinder(0.135, 0, 0.23, (-0.044, 0.044)),
+        p.cylinder(0.055, 0, 0.16, (0, 0.052)),
     )
     for k in range(number):
         s = -1 if k % 2 else 1
@@ -367,25 +361,25 @@ def bass_drum(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "drum",
-        b.cylinder(r, (0, -0.2, r + 0.02), (0, 0.2, r + 0.02)),
+        b.cylinder(r, 0, (-0.2, 0.2), r + 0.02),
         [b.torus(r, 0.015, (0, y, r + 0.02), Y) for y in (-0.19, 0.19)],
         [beam(0.015, 0.015, (s * 0.9 * r, -0.1, 0.8 * r), (s * 1.3 * r, -0.15, 0.008), X) for s in (-1, 1)],
         slab(0.05, (0.19, 0.5), (0, 0.015)),
         [box((s * 0.045, 0.27, 0.01), (s * 0.037, 0.3, 0.25)) for s in (-1, 1)],
         look="red wood",
     )
-    b.cut("drum", b.cylinder(r - 0.01, (0, -0.19, r + 0.02), (0, 0.19, r + 0.02)))
-    b.bore("drum", b.cylinder(0.007, (-1, 0.285, 0.235), (1, 0.285, 0.235)))
+    b.cut("drum", b.cylinder(r - 0.01, 0, (-0.19, 0.19), r + 0.02))
+    b.bore("drum", b.cylinder(0.007, (-1, 1), 0.285, 0.235))
     b.part(
         "beater",
-        b.cylinder(0.005, (-0.044, 0.285, 0.235), (0.044, 0.285, 0.235)),
+        b.cylinder(0.005, (-0.044, 0.044), 0.285, 0.235),
         beam(0.008, 0.008, (0, 0.285, 0.23), (0, 0.33, 0.36), X),
         ball(0.025, (0, 0.33, 0.37)),
         look="steel",
     )
-    b.hinge("beater", "drum", X, (0, 0.285, 0.235), 0.15, lower=-0.5)
+    b.hinge("beater", "drum", X, (0, 0.285, 0.235), 0.15, -0.5)
     b.part("pedal", beam(0.06, 0.008, (0, 0.49, 0.025), (0, 0.33, 0.1)), look="steel")
-    b.hinge("pedal", "drum", -X, (0, 0.49, 0.025), 0.1, lower=-0.25)
+    b.hinge("pedal", "drum", -X, (0, 0.49, 0.025), 0.1, -0.25)
     b.follow("beater", "pedal", -1.5)
 
 
@@ -417,11 +411,11 @@ def castanets(b: ObjectBuilder, radius: float) -> None:
     for name, s in (("shell", -1), ("other_shell", 1)):
         shell = p.ball(1, (0, 0, 0)).scale((1, 1, 0.45))
         inner = p.slab(2, 1.1, (s * -2, s * 0.02)) + p.ball(0.75, (0, 0, s * -0.2)).scale((1, 1, 0.45))
-        knuckle = p.cylinder(0.08, (s * 0.02, 1.12, 0), (s * 0.2, 1.12, 0))
+        knuckle = p.cylinder(0.08, (s * 0.02, s * 0.2), 1.12, 0)
         tab = p.slab((s * 0.02, s * 0.2), (0.8, 1.12), (s * 0.02, s * 0.08))
         b.part(name, shell - inner, tab, knuckle, look="brown wood")
-    b.part("shell", p.cylinder(0.04, (-0.1, 1.12, 0), (0.2, 1.12, 0)))
-    b.cut("other_shell", p.cylinder(0.05, (0, 1.12, 0), (0.3, 1.12, 0)))
+    b.part("shell", p.cylinder(0.04, (-0.1, 0.2), 1.12, 0))
+    b.cut("other_shell", p.cylinder(0.05, (0, 0.3), 1.12, 0))
     b.hinge("other_shell", "shell", -X, (0, 1.12 * r, 0), 0.6)
 
 
@@ -443,7 +437,7 @@ def bobblehead(b: ObjectBuilder, size: float) -> None:
         look="pink",
     )
     b.cut("head", [p.slab((s * 0.008, s * 0.03), 0.02, (0, 0.103)) for s in (-1, 1)])
-    b.hinge("head", "body", X, p(0, 0, 0.092), 0.12, lower=-0.12)
+    b.hinge("head", "body", X, p(0, 0, 0.092), 0.12, -0.12)
 
 
 @kind("gymnast toy", words="acrobat toy, high bar toy", size=(0.8, 1.4))
@@ -455,14 +449,14 @@ def acrobat_toy(b: ObjectBuilder, size: float) -> None:
         [p.slab((s * 0.08, s * 0.07), 0.01, (0.01, 0.26)) for s in (-1, 1)],
         look="wood",
     )
-    b.bore("frame", p.cylinder(0.0055, (-1, 0, 0.24), (1, 0, 0.24)))
+    b.bore("frame", p.cylinder(0.0055, (-1, 1), 0, 0.24))
     b.part(
         "figure",
-        p.cylinder(0.004, (-0.09, 0, 0.24), (0.09, 0, 0.24)),
-        [p.rod(0.007, (s * 0.025, 0, 0.24), (s * 0.025, 0, 0.18)) for s in (-1, 1)],
+        p.cylinder(0.004, (-0.09, 0.09), 0, 0.24),
+        [p.rod(0.007, s * 0.025, 0, (0.24, 0.18)) for s in (-1, 1)],
         p.slab(0.025, 0.012, (0.12, 0.18)),
         p.ball(0.018, (0, 0, 0.195)),
-        [p.rod(0.008, (s * 0.014, 0, 0.12), (s * 0.014, 0, 0.06)) for s in (-1, 1)],
+        [p.rod(0.008, s * 0.014, 0, (0.12, 0.06)) for s in (-1, 1)],
         look="red wood",
     )
     b.spin("figure", "frame", X, p(0, 0, 0.24))
@@ -503,15 +497,12 @@ def claw_machine(b: ObjectBuilder, width: float) -> None:
 @kind(words="monocular, pirate telescope, hand telescope", length=(0.12, 0.25), radius=(0.015, 0.03))
 def spyglass(b: ObjectBuilder, length: float, radius: float) -> None:
     b.part(
-        "barrel",
-        b.tube(radius, radius - 0.003, (0, 0, 0), (0, length, 0)),
-        b.cylinder(radius, (0, 0, 0), (0, 0.004, 0)),
-        look="brass",
+        "barrel", b.tube(radius, radius - 0.003, 0, (0, length), 0), b.cylinder(radius, 0, (0, 0.004), 0), look="brass"
     )
     b.part(
         "tube",
-        b.tube(radius - 0.0045, radius - 0.007, (0, 0.2 * length, 0), (0, 1.2 * length, 0)),
-        b.tube(radius, radius - 0.007, (0, 1.15 * length, 0), (0, 1.22 * length, 0)),
+        b.tube(radius - 0.0045, radius - 0.007, 0, (0.2 * length, 1.2 * length), 0),
+        b.tube(radius, radius - 0.007, 0, (1.15 * length, 1.22 * length), 0),
         look="brass",
     )
     b.slide("tube", "barrel", Y, 0.7 * length, lower=-0.05 * length)
@@ -539,14 +530,14 @@ def foosball_table(b: ObjectBuilder, rods: int, players: int) -> None:
         look="wood",
     )
     for k, at in enumerate(spread(rods, -y, y)):
-        b.cut("table", b.cylinder(0.0093, (-1, at, 0.86), (1, at, 0.86)))
-        b.part(f"bumper_{k + 1}", b.tube(0.018, 0.0093, (0.19, at, 0.86), (0.22, at, 0.86)), look="rubber")
+        b.cut("table", b.cylinder(0.0093, (-1, 1), at, 0.86))
+        b.part(f"bumper_{k + 1}", b.tube(0.018, 0.0093, (0.19, 0.22), at, 0.86), look="rubber")
         b.slide(f"bumper_{k + 1}", "table", X, 0.1, -0.1, ajar=False)
         men = [box((x - 0.015, at - 0.01, 0.78), (x + 0.015, at + 0.01, 0.88)) for x in spread(players, -0.17, 0.17)]
         name = b.part(
             f"rod_{k + 1}",
-            b.cylinder(0.0085, (-0.56, at, 0.86), (0.56, at, 0.86)),
-            b.cylinder(0.016, (0.56, at, 0.86), (0.68, at, 0.86)),
+            b.cylinder(0.0085, (-0.56, 0.56), at, 0.86),
+            b.cylinder(0.016, (0.56, 0.68), at, 0.86),
             b.painted(*men, material="plastic", color="blue" if k % 2 else "red"),
             look="chrome",
         )

@@ -104,7 +104,7 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
     low = height + clearance
     elbow = (upper_arm, 0.0, low + thick)
     boss, hole, second = stub(elbow, (0, 0, 1), size, clearance, length=thick)
-    beam = hull(*[cylinder(size, (x, 0, low), (x, 0, low + thick)) for x in (0.0, upper_arm)])
+    beam = hull(*[cylinder(size, x, 0, (low, low + thick)) for x in (0.0, upper_arm)])
     w.body("upper_arm", rotor, beam, boss)
     w.cut("upper_arm", hole)
     w.turns("upper_arm", "column", (0, 0, 1), pivot, (-2.2, 2.2))
@@ -112,18 +112,18 @@ def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: 
     half = 0.016
     x = upper_arm + forearm
     room = half + clearance
-    arm = hull(*[cylinder(size, (at, 0, start), (at, 0, start + thick)) for at in (upper_arm, x)])
-    head = cylinder(0.7 * size, (x, 0, start - 0.02), (x, 0, start + thick + 0.06))
+    arm = hull(*[cylinder(size, at, 0, (start, start + thick)) for at in (upper_arm, x)])
+    head = cylinder(0.7 * size, x, 0, (start - 0.02, start + thick + 0.06))
     w.body("forearm", second, arm, head)
     w.cut("forearm", slab((x - room, x + room), room, (start - 1, start + 1)))
     w.turns("forearm", "upper_arm", (0, 0, 1), elbow, (-2.0, 2.0))
     bottom = start - 0.06
     top = start + thick + 0.09 + stroke
     spindle = slab((x - half, x + half), half, (bottom, top))
-    cap = cylinder(0.03, (x, 0, top - 0.001), (x, 0, top + 0.01))
+    cap = cylinder(0.03, x, 0, (top - 0.001, top + 0.01))
     tip = (x, 0.0, bottom)
     _unused, hole, tool = stub(tip, (0, 0, -1), 0.024, clearance)
-    collar = cylinder(0.024, (x, 0, bottom), (x, 0, bottom + 0.03))
+    collar = cylinder(0.024, x, 0, (bottom, bottom + 0.03))
     w.body("spindle", spindle, cap, collar)
     w.cut("spindle", hole)
     w.slides("spindle", "forearm", (0, 0, -1), tip, (0.0, stroke))
@@ -180,7 +180,7 @@ def gantry(w: Workshop, width: float, depth: float, height: float, clearance: fl
     stroke = low - 0.12
     ram = slab(0.015, (-0.105, -0.075), (low, top + 0.08 + stroke))
     cap = slab(0.03, (-0.12, -0.06), (top + 0.08 + stroke - 0.001, top + 0.1 + stroke))
-    tool = cylinder(0.02, (0, -0.09, low - 0.03), (0, -0.09, low + 0.001))
+    tool = cylinder(0.02, 0, -0.09, (low - 0.03, low + 0.001))
     w.body("ram", ram, cap, tool)
     w.slides("ram", "carriage", (0, 0, -1), (0, -0.09, low), (0.0, stroke))
     w.settle()
@@ -244,7 +244,7 @@ def hand(
                 slab((x - 0.5 * finger_width, x + 0.5 * finger_width), radius, (z + fork_room(radius, tight), top)),
             ]
             if k + 1 == joints:
-                solids = [*solids, cylinder(radius, (x - 0.5 * finger_width, 0, top), (x + 0.5 * finger_width, 0, top))]
+                solids = [*solids, cylinder(radius, (x - 0.5 * finger_width, x + 0.5 * finger_width), 0, top)]
             w.body(name, solids)
             w.turns(name, parent, (1, 0, 0), (x, 0, z), (0.0, 1.5), rest=open)
             parent, z = (name, z + length)

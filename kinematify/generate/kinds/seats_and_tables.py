@@ -423,7 +423,7 @@ def folding_chair(
     def hang_of(name: str, solids: Sequence[Manifold], level: float, opens: float) -> None:
         end = 0.5 * width - 0.35 * rail
         w.cut("frame", bore(pin, clearance, (-end - clearance, 0, level), (end + clearance, 0, level)))
-        w.body(f"{name}", solids, cylinder(pin, (-end, 0, level), (end, 0, level)))
+        w.body(f"{name}", solids, cylinder(pin, (-end, end), 0, level))
         w.turns(f"{name}", "frame", (1, 0, 0), (0, 0, level), (0.0, opens), rest=open)
 
     half = 0.5 * width
@@ -441,7 +441,7 @@ def folding_chair(
     thick_2 = the_half
     pivot = seat - 0.5 * rail - 0.025
     legs = [between(s * inner, s * (inner - rail), thick_2, 0.0, pivot) for s in (-1, 1)]
-    legs = legs + [cylinder(thick_2, (s * inner, 0, pivot), (s * (inner - rail), 0, pivot)) for s in (-1, 1)]
+    legs = legs + [cylinder(thick_2, (s * inner, s * (inner - rail)), 0, pivot) for s in (-1, 1)]
     legs = legs + [between(-inner, inner, 0.5 * thick_2, z, z + 0.025) for z in (0.06, 0.7 * pivot)]
     hang_of("legs", solids=legs, level=pivot, opens=the_legs)
     # A seat that stands up before the back and comes down to the front.
@@ -451,7 +451,7 @@ def folding_chair(
         between(-inner, inner, half_2, seat + k * pitch_2 + 0.012, seat + (k + 1) * pitch_2) for k in range(boards)
     ]
     for s in (-1, 1):
-        its_seat = [*its_seat, cylinder(half_2, (s * inner, 0, seat), (s * (inner - 0.03), 0, seat))]
+        its_seat = [*its_seat, cylinder(half_2, (s * inner, s * (inner - 0.03)), 0, seat)]
         its_seat = [*its_seat, between(s * inner, s * (inner - 0.03), half_2, seat, seat + depth)]
     hang_of("seat", solids=its_seat, level=seat, opens=0.5 * pi)
     w.settle()
@@ -515,11 +515,9 @@ def office_chair(
         high = level + seat + 0.19
         inner = -0.06 if x > 0 else 0.06
         return [
-            rod(0.012, (x + inner, 0.0, low), (x, 0.0, low)),
-            rod(0.012, (x, 0.0, low), (x, 0.0, high)),
-            hull(
-                rod(0.018, (x, -0.11, high), (x, 0.1, high)), rod(0.018, (x, -0.11, high + 0.01), (x, 0.1, high + 0.01))
-            ),
+            rod(0.012, (x + inner, x), 0.0, low),
+            rod(0.012, x, 0.0, (low, high)),
+            hull(rod(0.018, x, (-0.11, 0.1), high), rod(0.018, x, (-0.11, 0.1), high + 0.01)),
         ]
 
     level = wheel / 0.38
@@ -535,7 +533,7 @@ def office_chair(
         turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
         place = at(turn @ (0.0, -star, 0.0), turn)
         arm = hull(
-            cylinder(0.022, (0, star, level), (0, star, level + 0.045), segments=24),
+            cylinder(0.022, 0, star, (level, level + 0.045), segments=24),
             cylinder(0.016, level, level + 0.03, segments=24),
         )
         w.add("base", arm.transform(place))

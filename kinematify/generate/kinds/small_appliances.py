@@ -68,7 +68,7 @@ def toaster(
     half = 0.5 * width
     round_ = 0.02
     corners = [(s * (half - round_), y) for s in (-1, 1) for y in (round_, depth - round_)]
-    w.body("body", hull(*[cylinder(round_, (x, y, 0), (x, y, height)) for x, y in corners]))
+    w.body("body", hull(*[cylinder(round_, x, y, (0, height)) for x, y in corners]))
     share = (width - 2.0 * round_) / levers
     each = -(-slots // levers)
     for k in range(levers):
@@ -219,8 +219,8 @@ def coffee_machine(
         level_2 = base + clearance
         top_3 = base + 0.8 * (head - base)
         y = 0.3 * depth
-        glass = cylinder(radius_2, (0, y, level_2), (0, y, top_3))
-        hollow = cylinder(radius_2 - 0.004, (0, y, level_2 + 0.004), (0, y, top_3 + 1.0))
+        glass = cylinder(radius_2, 0, y, (level_2, top_3))
+        hollow = cylinder(radius_2 - 0.004, 0, y, (level_2 + 0.004, top_3 + 1.0))
         reach = y - radius_2
         grip_2 = union(
             slab(0.008, (reach - 0.045, reach - 0.033), (level_2 + 0.2 * (top_3 - level_2), top_3)),
@@ -229,7 +229,7 @@ def coffee_machine(
                 for z in (level_2 + 0.25 * (top_3 - level_2), top_3 - 0.014)
             ],
         )
-        w.body("jug", glass - hollow, grip_2 - cylinder(radius_2 - 0.002, (0, y, -1), (0, y, 1)), material="glass")
+        w.body("jug", glass - hollow, grip_2 - cylinder(radius_2 - 0.002, 0, y, (-1, 1)), material="glass")
         travel = (0.0, 0.7 * depth)
         w.slides("jug", "body", (0, -1, 0), (0, y, level_2), travel, rest=open)
     else:
@@ -246,8 +246,8 @@ def coffee_machine(
             w.add("body", boss)
             w.cut("body", hole)
             level_3 = pivot_2[2] - clearance - 0.014
-            grip_3 = rod(0.009, (x, y_2, level_3), (x, y_2 - reach_2, level_3))
-            spout = cylinder(0.008, (x, y_2, level_3 - 0.02), (x, y_2, level_3))
+            grip_3 = rod(0.009, x, (y_2, y_2 - reach_2), level_3)
+            spout = cylinder(0.008, x, y_2, (level_3 - 0.02, level_3))
             name = f"portafilter_{k + 1}"
             w.body(name, rotor, grip_3, spout)
             w.turns(name, "body", (0, 0, -1), pivot_2, (0.0, turn), rest=open)
@@ -332,7 +332,7 @@ def fan(
         wide, level, front = blades_of(radius)
         root = (0.2 * radius, 0.25 * wide)
         tip = (radius - 0.5 * wide, 0.5 * wide)
-        ends = [cylinder(r, (x, 0, -0.0015), (x, 0, 0.0015), segments=24) for x, r in (root, tip)]
+        ends = [cylinder(r, x, 0, (-0.0015, 0.0015), segments=24) for x, r in (root, tip)]
         blade = (hull(*ends) + slab((0, root[0]), root[1], 0.0015)).rotate((pitch, 0, 0))
         blades_2 = [blade.translate((0, 0, level)).rotate((0, 0, 360.0 * k / count)) for k in range(count)]
         cap = cylinder(0.9 * hub, clearance + 0.001, front)
@@ -384,7 +384,7 @@ def fan(
         w.body("yoke", rotor, forked)
         w.turns("yoke", "base", (0, 0, 1), swing, (-0.8, 0.8), rest=open)
         front = -0.5 * radius - 0.03
-        housing = cylinder(motor, (0, 0.03, axle), (0, front, axle))
+        housing = cylinder(motor, 0, (0.03, front), axle)
         neck = slab(0.008, 0.01, (tilt[2] + 0.015, axle))
         w.body("head", tongue, neck, housing)
         w.turns("head", "yoke", (-1, 0, 0), tilt, (-0.3, 0.3), rest=open)

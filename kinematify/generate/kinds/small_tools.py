@@ -166,12 +166,12 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
     b.part(
         "base",
         [
-            hull(box((x, y - 0.012, 0.004), (x + e, y + 0.012, 0.008)), b.cylinder(0.007, (x, y, z), (x + e, y, z)))
+            hull(box((x, y - 0.012, 0.004), (x + e, y + 0.012, 0.008)), b.cylinder(0.007, (x, x + e), y, z))
             for x in (-half, half - e)
         ],
-        hull(b.cylinder(half, (0, half, 0), (0, half, 0.008)), slab(half, (length - 0.02, length), (0, 0.008))),
+        hull(b.cylinder(half, 0, half, (0, 0.008)), slab(half, (length - 0.02, length), (0, 0.008))),
         slab(0.4 * half, (0.006, 0.026), (0.0079, 0.0095)),
-        b.cylinder(0.0025, (-half, y, z), (half, y, z)),
+        b.cylinder(0.0025, (-half, half), y, z),
         look="metal",
     )
     b.part(
@@ -181,7 +181,7 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
         slab(inner, (0.004, 0.004 + e), (low, top)),
         box((0.0001 - inner, 0.014, low), (inner - 0.0001, 0.6 * y, low + 0.4 * (top - low))),
         [
-            hull(box((x, y - 0.022, low), (x + e, y - 0.012, top)), b.cylinder(0.006, (x, y, z), (x + e, y, z)))
+            hull(box((x, y - 0.022, low), (x + e, y - 0.012, top)), b.cylinder(0.006, (x, x + e), y, z))
             for x in (-inner, inner - e)
         ],
         look="silver steel",
@@ -189,15 +189,12 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
     b.part(
         "arm",
         hull(
-            b.cylinder(level, (-outer, front, under + level), (outer, front, under + level)),
-            b.cylinder(level, (-outer, y, under + level), (outer, y, under + level)),
+            b.cylinder(level, (-outer, outer), front, under + level),
+            b.cylinder(level, (-outer, outer), y, under + level),
             slab(outer, (y / 2, y), (under, under + cover)),
         ),
         [
-            hull(
-                box((x, y / 2, z - 0.002), (x + e, y - 0.012, under + level)),
-                b.cylinder(0.006, (x, y, z), (x + e, y, z)),
-            )
+            hull(box((x, y / 2, z - 0.002), (x + e, y - 0.012, under + level)), b.cylinder(0.006, (x, x + e), y, z))
             for x in (-outer, outer - e)
         ],
         box((g + e - inner, 0.0085, z - 0.003), (inner - e - g, 0.0095, under + level)),
@@ -214,8 +211,8 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
             ),
         )
     for name, above, down, upper in (("magazine", "base", 0.005, 1.2), ("arm", "magazine", 0.008, 1.3)):
-        b.cut(name, b.cylinder(0.0025 + 1.5 * g, (-1, y, z), (1, y, z)))
-        b.hinge(name, above, -X, (0, y, z), upper, lower=-down / length)
+        b.cut(name, b.cylinder(0.0025 + 1.5 * g, (-1, 1), y, z))
+        b.hinge(name, above, -X, (0, y, z), upper, -down / length)
 
 
 @kind(
@@ -247,7 +244,7 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
     clip = [
         slab(0.002, (free, fixed), (2 * r + 0.0012, 2 * r + 0.0024)),
         slab(0.002, (fixed, fixed + s * 0.004), (1.8 * r, 2 * r + 0.0024)),
-        b.cylinder(0.001, (-0.002, free - s * 0.002, 2 * r + 0.0012), (0.002, free - s * 0.002, 2 * r + 0.0012)),
+        b.cylinder(0.001, (-0.002, 0.002), free - s * 0.002, 2 * r + 0.0012),
     ]
     if mechanism == "cap":
         b.part(
@@ -255,9 +252,9 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
             b.lathe([(0, 0), (0.0015, 0), (q, 0.012), (q, n + 0.001), (0, n + 0.001)], segments=6)
             .rotate((-90, 0, 0))
             .translate((0, 0, r)),
-            b.cylinder(r, (0, n, r), (0, length, r)),
+            b.cylinder(r, 0, (n, length), r),
         )
-        b.part("cap", b.cylinder(r, (0, -0.006, r), (0, n - g, r)), clip)
+        b.part("cap", b.cylinder(r, 0, (-0.006, n - g), r), clip)
         b.cut(
             "cap",
             b.lathe([(0, -0.002), (1.155 * (q + g), -0.002), (1.155 * (q + g), 1), (0, 1)], segments=6)
@@ -314,13 +311,13 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
             )
             b.slide("button", "barrel", -Y, 0.005)
         else:
-            b.cut("barrel", b.cylinder(0.55 * r + 1.5 * g, (0, m - 1.4 * k - g, r), (0, m + g, r)))
-            b.part("barrel", b.cylinder(0.0006, (0, -0.002, r), (0, 0.012, r)))
+            b.cut("barrel", b.cylinder(0.55 * r + 1.5 * g, 0, (m - 1.4 * k - g, m + g), r))
+            b.part("barrel", b.cylinder(0.0006, 0, (-0.002, 0.012), r))
             b.part(
                 "grip",
-                b.cylinder(0.55 * r, (0, m - 1.4 * k, r), (0, m + k, r)),
-                b.cylinder(r, (0, m + g, r), (0, length, r)),
-                b.cylinder(r + 0.0005, (0, m + g, r), (0, m + g + 0.002, r)),
+                b.cylinder(0.55 * r, 0, (m - 1.4 * k, m + k), r),
+                b.cylinder(r, 0, (m + g, length), r),
+                b.cylinder(r + 0.0005, 0, (m + g, m + g + 0.002), r),
                 clip,
                 look="metal",
             )

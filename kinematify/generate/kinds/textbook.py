@@ -63,7 +63,7 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
             ],
             look="grey steel",
         )
-        b.hinge(f"arm_{k}", top, -Y, foot, 1.0 if k else 0.5, lower=-0.4 if k else -0.2)
+        b.hinge(f"arm_{k}", top, -Y, foot, 1.0 if k else 0.5, -0.4 if k else -0.2)
         if k:
             b.cut(f"arm_{k}", b.cylinder(0.0135 * L, foot - L * Y, foot + L * Y))
             b.follow(f"arm_{k}", "arm_0", 2)
@@ -84,7 +84,7 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
             look="grey steel",
         )
         b.cut(f"cross_{k}", b.cylinder(0.0135 * L, middle - L * Y, middle + L * Y))
-        b.hinge(f"cross_{k}", f"arm_{k}", Y, middle, 1.2, lower=-0.6)
+        b.hinge(f"cross_{k}", f"arm_{k}", Y, middle, 1.2, -0.6)
         b.follow(f"cross_{k}", "arm_0", 2)
         top = f"cross_{k}"
         lift = z0 + (k + 1) * L * height
@@ -102,7 +102,7 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
         look="yellow steel",
     )
     b.cut("platform", b.cylinder(0.0135 * L, end - L * Y, end + L * Y))
-    b.hinge("platform", top, -Y, end, 0.6, lower=-0.3)
+    b.hinge("platform", top, -Y, end, 0.6, -0.3)
     b.follow("platform", "arm_0", 1)
 
 
@@ -123,28 +123,28 @@ def crank_slider(b: ObjectBuilder, radius: float) -> None:
         p.slab((2.2, 6.4), (0.1, 0.3), 0.6),
         look="grey steel",
     )
-    b.bore("frame", p.cylinder(0.22, (0, -1, 0), (0, 1, 0)))
+    b.bore("frame", p.cylinder(0.22, 0, (-1, 1), 0))
     b.part(
         "crank",
-        p.cylinder(0.2, (0, -0.3, 0), (0, 0.5, 0)),
-        p.cylinder(1.25, (0, -0.3, 0), (0, -0.05, 0)),
-        p.cylinder(0.16, (1, -0.6, 0), (1, -0.25, 0)),
+        p.cylinder(0.2, 0, (-0.3, 0.5), 0),
+        p.cylinder(1.25, 0, (-0.3, -0.05), 0),
+        p.cylinder(0.16, 1, (-0.6, -0.25), 0),
         look="red steel",
     )
     b.spin("crank", "frame", -Y, (0, 0, 0))
     b.part(
         "rod",
         beam(0.3 * r, 0.22 * r, (r, -0.45 * r, 0), (r + l, -0.45 * r, 0), Y),
-        p.cylinder(0.3, (1, -0.56, 0), (1, -0.34, 0)),
-        b.cylinder(0.25 * r, (r + l, -0.56 * r, 0), (r + l, -0.34 * r, 0)),
+        p.cylinder(0.3, 1, (-0.56, -0.34), 0),
+        b.cylinder(0.25 * r, r + l, (-0.56 * r, -0.34 * r), 0),
         look="metal",
     )
-    b.cut("rod", b.cylinder(0.18 * r, (r, -1, 0), (r, 1, 0)))
+    b.cut("rod", b.cylinder(0.18 * r, r, (-1, 1), 0))
     b.spin("rod", "crank", -Y, (r, 0, 0))
     b.part(
         "piston",
         slab((r + l - 0.3 * r, r + l + 0.7 * r), (-0.3 * r, 0.06 * r), 0.4 * r),
-        b.cylinder(0.16 * r, (r + l, -0.335 * r, 0), (r + l, -0.2 * r, 0)),
+        b.cylinder(0.16 * r, r + l, (-0.335 * r, -0.2 * r), 0),
         look="metal",
     )
     b.slide("piston", "frame", -X, 2.05 * r, lower=-0.02 * r)
@@ -159,29 +159,29 @@ def four_bar_linkage(b: ObjectBuilder, length: float) -> None:
     b.part(
         "ground",
         slab((-0.15 * L, 1.15 * L), (0, t), 0.06 * L),
-        [b.cylinder(0.03 * L, (x, -1.3 * t, 0), (x, t, 0)) for x in (0, L)],
+        [b.cylinder(0.03 * L, x, (-1.3 * t, t), 0) for x in (0, L)],
         look="black steel",
     )
     for name, x in (("crank", 0), ("rocker", L)):
         b.part(
             name,
             beam(0.07 * L, t, (x, -0.7 * t, 0), (x, -0.7 * t, h), Y),
-            b.cylinder(0.05 * L, (x, -1.2 * t, 0), (x, -0.2 * t, 0)),
-            b.cylinder(0.05 * L, (x, -1.2 * t, h), (x, -0.2 * t, h)),
-            b.cylinder(0.025 * L, (x, -2.6 * t, h), (x, -0.5 * t, h)),
+            b.cylinder(0.05 * L, x, (-1.2 * t, -0.2 * t), 0),
+            b.cylinder(0.05 * L, x, (-1.2 * t, -0.2 * t), h),
+            b.cylinder(0.025 * L, x, (-2.6 * t, -0.5 * t), h),
             look=("metal", f"{'red' if x == 0 else 'blue'}"),
         )
-        b.cut(name, b.cylinder(0.0325 * L, (x, -1, 0), (x, 1, 0)))
-        b.hinge(name, "ground", Y, (x, 0, 0), 0.9, lower=-0.9)
+        b.cut(name, b.cylinder(0.0325 * L, x, (-1, 1), 0))
+        b.hinge(name, "ground", Y, (x, 0, 0), 0.9, -0.9)
     b.follow("rocker", "crank", 1)
     b.part(
         "coupler",
         beam(0.07 * L, t, (0, -2 * t, h), (L, -2 * t, h), Y),
-        [b.cylinder(0.05 * L, (x, -2.5 * t, h), (x, -1.5 * t, h)) for x in (0, L)],
+        [b.cylinder(0.05 * L, x, (-2.5 * t, -1.5 * t), h) for x in (0, L)],
         look="metal",
     )
-    b.cut("coupler", [b.cylinder(0.028 * L, (x, -1, h), (x, 1, h)) for x in (0, L)])
-    b.hinge("coupler", "crank", -Y, (0, 0, h), 0.9, lower=-0.9)
+    b.cut("coupler", [b.cylinder(0.028 * L, x, (-1, 1), h) for x in (0, L)])
+    b.hinge("coupler", "crank", -Y, (0, 0, h), 0.9, -0.9)
     b.follow("coupler", "crank", 1)
     b.close("coupler", "rocker", (L, -2 * t, h))
 
@@ -201,10 +201,10 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
     b.part(
         "plate",
         slab((-half, c + 1.5 * r), (0, 0.12 * r), half),
-        [b.cylinder(0.14 * r, (x, -0.5 * r, 0), (x, 0.02 * r, 0)) for x in (0, c)],
+        [b.cylinder(0.14 * r, x, (-0.5 * r, 0.02 * r), 0) for x in (0, c)],
         look="steel",
     )
-    b.part("wheel", b.cylinder(0.95 * rim, (0, -0.28 * r, 0), (0, -0.05 * r, 0)), look="brass")
+    b.part("wheel", b.cylinder(0.95 * rim, 0, (-0.28 * r, -0.05 * r), 0), look="brass")
     b.cut(
         "wheel",
         [
@@ -217,22 +217,19 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
             )
             for b_ in [(0.5 + k) * step for k in range(slots)]
         ],
-        [
-            b.cylinder(0.62 * r, (c * cos(b_), -r, c * sin(b_)), (c * cos(b_), r, c * sin(b_)))
-            for b_ in [step * k for k in range(slots)]
-        ],
-        b.cylinder(0.155 * r, (0, -r, 0), (0, r, 0)),
+        [b.cylinder(0.62 * r, c * cos(b_), (-r, r), c * sin(b_)) for b_ in [step * k for k in range(slots)]],
+        b.cylinder(0.155 * r, 0, (-r, r), 0),
     )
     b.spin("wheel", "plate", -Y, (0, 0, 0))
     b.part(
         "driver",
-        b.cylinder(1.1 * r, (c, -0.45 * r, 0), (c, -0.3 * r, 0)),
-        b.cylinder(0.58 * r, (c, -0.31 * r, 0), (c, -0.285 * r, 0)),
-        b.rod(0.1 * r, (c + 0.6 * r, -0.44 * r, 0), (c + 0.6 * r, -0.9 * r, 0)),
+        b.cylinder(1.1 * r, c, (-0.45 * r, -0.3 * r), 0),
+        b.cylinder(0.58 * r, c, (-0.31 * r, -0.285 * r), 0),
+        b.rod(0.1 * r, c + 0.6 * r, (-0.44 * r, -0.9 * r), 0),
         look="red steel",
     )
-    b.cut("driver", b.cylinder(0.155 * r, (c, -2 * r, 0), (c, r, 0)), slab((c, c + 0.7 * r), (-0.305 * r, 0), 0.4 * r))
-    b.part("driver", b.cylinder(0.08 * r, (c + r, -0.31 * r, 0), (c + r, -0.285 * r, 0)))
+    b.cut("driver", b.cylinder(0.155 * r, c, (-2 * r, r), 0), slab((c, c + 0.7 * r), (-0.305 * r, 0), 0.4 * r))
+    b.part("driver", b.cylinder(0.08 * r, c + r, (-0.31 * r, -0.285 * r), 0))
     b.spin("driver", "plate", -Y, (c, 0, 0))
 
 
@@ -253,7 +250,7 @@ def orrery(b: ObjectBuilder, number: int, size: float) -> None:
             f"planet_{k}",
             p.tube(0.014, 0.0075, z, z + 0.018),
             p.beam(0.005, 0.005, (0.009 * cos(a), 0.009 * sin(a), z + 0.009), (x * cos(a), x * sin(a), z + 0.009)),
-            p.cylinder(0.0025, (x * cos(a), x * sin(a), z + 0.007), (x * cos(a), x * sin(a), 0.375)),
+            p.cylinder(0.0025, x * cos(a), x * sin(a), (z + 0.007, 0.375)),
             p.ball(r, (x * cos(a), x * sin(a), 0.38)),
             look="brass",
         )
@@ -265,13 +262,13 @@ def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
     r = radius
     p = b.sized(r)
     b.part("frame", p.slab((-2.2, 4.2), (0.05, 0.25), 2), p.slab((3.4, 3.8), (-1, 0.06), 0.35), look="grey steel")
-    b.bore("frame", p.cylinder(0.21, (0, -1, 0), (0, 1, 0)), p.slab((2, 5), (-0.87, -0.53), 0.17))
+    b.bore("frame", p.cylinder(0.21, 0, (-1, 1), 0), p.slab((2, 5), (-0.87, -0.53), 0.17))
     b.part(
         "crank",
-        p.cylinder(0.18, (0, -0.2, 0), (0, 0.4, 0)),
-        p.cylinder(1.25, (0, -0.3, 0), (0, -0.02, 0)),
-        p.cylinder(0.15, (0, -0.54, 1), (0, -0.25, 1)),
-        p.cylinder(0.09, (0, -0.75, 1), (0, -0.5, 1)),
+        p.cylinder(0.18, 0, (-0.2, 0.4), 0),
+        p.cylinder(1.25, 0, (-0.3, -0.02), 0),
+        p.cylinder(0.15, 0, (-0.54, -0.25), 1),
+        p.cylinder(0.09, 0, (-0.75, -0.5), 1),
         look="red steel",
     )
     b.spin("crank", "frame", -Y, (0, 0, 0))
@@ -279,7 +276,7 @@ def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
     b.cut("yoke", p.slab(0.18, (-2, 0), 1.25))
     b.slide("yoke", "frame", X, r, lower=-r)
     b.part("slider", p.slab(0.165, (-0.78, -0.57), (0.8, 1.2)), look="brass")
-    b.cut("slider", p.cylinder(0.105, (0, -1, 1), (0, 0, 1)))
+    b.cut("slider", p.cylinder(0.105, 0, (-1, 0), 1))
     b.slide("slider", "yoke", -Z, 2.01 * r, lower=-0.01 * r)
     b.close("slider", "crank", (0, -0.68 * r, r))
 
@@ -294,20 +291,20 @@ def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
         "frame",
         slab(5 * r, (0.06 * r, 0.3 * r), (-2.2 * r, 1.4 * r)),
         slab(5 * r, (-0.7 * r, 0.07 * r), (-2.2 * r, -1.72 * r)),
-        b.cylinder(0.2 * r, (0, -0.8 * r, 0), (0, 0.1 * r, 0)),
+        b.cylinder(0.2 * r, 0, (-0.8 * r, 0.1 * r), 0),
         look="grey steel",
     )
     b.part(
         "pinion",
-        b.cylinder(0.88 * r, (0, -0.6 * r, 0), (0, 0.02 * r, 0)),
+        b.cylinder(0.88 * r, 0, (-0.6 * r, 0.02 * r), 0),
         [
             beam(0.17 * r, 0.5 * r, (0, -0.3 * r, 0), (1.06 * r * cos(a), -0.3 * r, 1.06 * r * sin(a)), Y)
             for a in [-1.5708 + 6.28318 * k / n for k in range(n)]
         ],
         look="brass",
     )
-    b.cut("pinion", b.cylinder(0.22 * r, (0, -2 * r, 0), (0, r, 0)))
-    b.hinge("pinion", "frame", -Y, (0, 0, 0), 2.0, lower=-2.0)
+    b.cut("pinion", b.cylinder(0.22 * r, 0, (-2 * r, r), 0))
+    b.hinge("pinion", "frame", -Y, (0, 0, 0), 2.0, -2.0)
     b.part(
         "rack",
         slab(4 * r, (-0.6 * r, 0.02 * r), (-1.7 * r, -1.2 * r)),
@@ -331,28 +328,28 @@ def worm_gear(b: ObjectBuilder, radius: float) -> None:
     b.part(
         "frame",
         p.slab(1.5, (0.45, 0.65), (-2.2, 1.4)),
-        p.cylinder(0.2, (0, -0.4, 0), (0, 0.5, 0)),
+        p.cylinder(0.2, 0, (-0.4, 0.5), 0),
         [p.box((s * 1.3, -0.3, -1.75), (s * 1.5, 0.5, -1.2)) for s in (-1, 1)],
         look="grey steel",
     )
-    b.bore("frame", p.cylinder(0.13, (-2, 0, -1.45), (2, 0, -1.45)))
+    b.bore("frame", p.cylinder(0.13, (-2, 2), 0, -1.45))
     b.part(
         "wheel",
-        p.cylinder(0.95, (0, -0.25, 0), (0, 0.25, 0)),
+        p.cylinder(0.95, 0, (-0.25, 0.25), 0),
         [
             beam(0.08 * r, 0.5 * r, (0, 0, 0), (1.02 * r * cos(a), 0, 1.02 * r * sin(a)), Y)
             for a in [6.28318 * k / 24 for k in range(24)]
         ],
         look="brass",
     )
-    b.cut("wheel", p.cylinder(0.22, (0, -1, 0), (0, 1, 0)))
+    b.cut("wheel", p.cylinder(0.22, 0, (-1, 1), 0))
     b.spin("wheel", "frame", -Y, (0, 0, 0))
     b.part(
         "worm",
-        p.cylinder(0.11, (-2, 0, -1.45), (1.5, 0, -1.45)),
-        p.cylinder(0.3, (-1.1, 0, -1.45), (1.1, 0, -1.45)),
+        p.cylinder(0.11, (-2, 1.5), 0, -1.45),
+        p.cylinder(0.3, (-1.1, 1.1), 0, -1.45),
         [p.torus(0.34, 0.06, (x, 0, -1.45), X) for x in (-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9)],
-        p.cylinder(0.3, (-2.3, 0, -1.45), (-1.9, 0, -1.45)),
+        p.cylinder(0.3, (-2.3, -1.9), 0, -1.45),
         look="steel",
     )
     b.spin("worm", "frame", X, (0, 0, -1.45 * r))
@@ -368,7 +365,7 @@ def bevel_gears(b: ObjectBuilder, radius: float) -> None:
         p.slab((-1.6, 1.2), 1.2, (-2, -1.8)),
         p.slab((-1.8, -1.6), 1.2, (-2, 0.9)),
         p.cylinder(0.2, -1.81, -1),
-        p.cylinder(0.2, (-1.61, 0, 0), (-1, 0, 0)),
+        p.cylinder(0.2, (-1.61, -1), 0, 0),
         look="grey steel",
     )
     b.part("gear_0", p.cone(0.95, 0.45, -1, -0.5), p.cylinder(0.35, -1.5, -0.99), look="brass")
@@ -376,11 +373,11 @@ def bevel_gears(b: ObjectBuilder, radius: float) -> None:
     b.spin("gear_0", "frame", Z, (0, 0, 0))
     b.part(
         "gear_1",
-        b.cone(0.95 * r, 0.45 * r, (-r - 0.03 * r, 0, 0), (-0.53 * r, 0, 0)),
-        p.cylinder(0.35, (-1.5, 0, 0), (-1, 0, 0)),
+        b.cone(0.95 * r, 0.45 * r, (-r - 0.03 * r, -0.53 * r), 0, 0),
+        p.cylinder(0.35, (-1.5, -1), 0, 0),
         look="brass",
     )
-    b.cut("gear_1", p.cylinder(0.22, (-3, 0, 0), (-0.95, 0, 0)))
+    b.cut("gear_1", p.cylinder(0.22, (-3, -0.95), 0, 0))
     b.spin("gear_1", "frame", X, (0, 0, 0))
     b.follow("gear_1", "gear_0", -1)
 
@@ -406,11 +403,7 @@ def planetary_gear(b: ObjectBuilder, radius: float, number: int) -> None:
         "carrier",
         b.cylinder(0.7 * r, 0.28 * r, 0.36 * r),
         [
-            b.cylinder(
-                0.07 * r,
-                (0.55 * r * cos(a), 0.55 * r * sin(a), 0.06 * r),
-                (0.55 * r * cos(a), 0.55 * r * sin(a), 0.3 * r),
-            )
+            b.cylinder(0.07 * r, 0.55 * r * cos(a), 0.55 * r * sin(a), (0.06 * r, 0.3 * r))
             for a in [6.28318 * k / number for k in range(number)]
         ],
         look="red metal",
@@ -443,13 +436,13 @@ def cam_follower(b: ObjectBuilder, radius: float) -> None:
         p.slab(2, 0.4, (3.1, 3.4)),
         look="wood",
     )
-    b.bore("frame", p.cylinder(0.17, (0, -1, 0), (0, 1, 0)), p.cylinder(0.17, 3, 4))
+    b.bore("frame", p.cylinder(0.17, 0, (-1, 1), 0), p.cylinder(0.17, 3, 4))
     b.part(
         "cam",
-        p.cylinder(1, (0, -0.25, 0.3), (0, 0.25, 0.3)),
-        p.cylinder(0.14, (0, -1.2, 0), (0, 0.7, 0)),
+        p.cylinder(1, 0, (-0.25, 0.25), 0.3),
+        p.cylinder(0.14, 0, (-1.2, 0.7), 0),
         p.beam(0.2, 0.15, (0, -1.15, 0), (1, -1.15, 0), Y),
-        p.cylinder(0.12, (0.95, -1.8, 0), (0.95, -1.1, 0)),
+        p.cylinder(0.12, 0.95, (-1.8, -1.1), 0),
         look="red steel",
     )
     b.spin("cam", "frame", -Y, (0, 0, 0))
@@ -470,13 +463,13 @@ def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
     b.part(
         "plate",
         p.box((-1.3, 0.03, -1.3), (1.5, 0.2, 1.9)),
-        p.cylinder(0.15, (0, -0.5, 0), (0, 0.05, 0)),
-        p.cylinder(0.08, (0.9, -0.4, 1.3), (0.9, 0.05, 1.3)),
+        p.cylinder(0.15, 0, (-0.5, 0.05), 0),
+        p.cylinder(0.08, 0.9, (-0.4, 0.05), 1.3),
         look="grey steel",
     )
     b.part(
         "wheel",
-        p.cylinder(0.85, (0, -0.3, 0), (0, -0.01, 0)),
+        p.cylinder(0.85, 0, (-0.3, -0.01), 0),
         [
             prism(
                 [
@@ -492,16 +485,16 @@ def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
         ],
         look="brass",
     )
-    b.cut("wheel", p.cylinder(0.17, (0, -1, 0), (0, 1, 0)))
+    b.cut("wheel", p.cylinder(0.17, 0, (-1, 1), 0))
     b.spin("wheel", "plate", Y, (0, 0, 0))
     b.part(
         "pawl",
         p.beam(0.14, 0.2, (0.9, -0.15, 1.3), (0.1, -0.15, 1.25), Y),
-        p.cylinder(0.16, (0.9, -0.25, 1.3), (0.9, -0.05, 1.3)),
+        p.cylinder(0.16, 0.9, (-0.25, -0.05), 1.3),
         look="red steel",
     )
-    b.cut("pawl", b.cylinder(0.095 * r, (0.9 * r, -1, 1.3 * r), (0.9 * r, 1, 1.3 * r)))
-    b.hinge("pawl", "plate", Y, (0.9 * r, 0, 1.3 * r), 0.6, lower=-0.03)
+    b.cut("pawl", b.cylinder(0.095 * r, 0.9 * r, (-1, 1), 1.3 * r))
+    b.hinge("pawl", "plate", Y, (0.9 * r, 0, 1.3 * r), 0.6, -0.03)
 
 
 @kind(words="cardan joint, u joint, hooke joint", radius=(0.015, 0.05))
@@ -515,15 +508,15 @@ def universal_joint(b: ObjectBuilder, radius: float) -> None:
         [p.slab((s * 1.1, s * 1.4), 0.5, (-2.1, 0.5)) for s in (-1, 1)],
         look="steel",
     )
-    b.bore("yoke_0", p.cylinder(0.24, (-2, 0, 0), (2, 0, 0)))
+    b.bore("yoke_0", p.cylinder(0.24, (-2, 2), 0, 0))
     b.part(
         "cross",
-        p.cylinder(0.2, (-1.4, 0, 0), (1.4, 0, 0)),
-        p.cylinder(0.2, (0, -1.4, 0), (0, 1.4, 0)),
+        p.cylinder(0.2, (-1.4, 1.4), 0, 0),
+        p.cylinder(0.2, 0, (-1.4, 1.4), 0),
         p.ball(0.45, (0, 0, 0)),
         look="black steel",
     )
-    b.hinge("cross", "yoke_0", X, (0, 0, 0), 0.6, lower=-0.6)
+    b.hinge("cross", "yoke_0", X, (0, 0, 0), 0.6, -0.6)
     b.part(
         "yoke_1",
         p.cylinder(0.5, 2, 5),
@@ -531,8 +524,8 @@ def universal_joint(b: ObjectBuilder, radius: float) -> None:
         [p.slab(0.5, (s * 1.1, s * 1.4), (-0.5, 2.1)) for s in (-1, 1)],
         look="steel",
     )
-    b.cut("yoke_1", p.cylinder(0.24, (0, -2, 0), (0, 2, 0)))
-    b.hinge("yoke_1", "cross", Y, (0, 0, 0), 0.6, lower=-0.6)
+    b.cut("yoke_1", p.cylinder(0.24, 0, (-2, 2), 0))
+    b.hinge("yoke_1", "cross", Y, (0, 0, 0), 0.6, -0.6)
 
 
 @kind(words="chaos pendulum", number=whole(1, 3, words="arm, link, pendulum, bob"), length=(0.15, 0.4))
@@ -541,7 +534,7 @@ def double_pendulum(b: ObjectBuilder, number: int, length: float) -> None:
         "stand",
         slab(0.15, 0.1, (0, 0.02)),
         slab(0.02, (0.01, 0.05), (0.01, 0.1 + (number + 0.3) * length)),
-        b.cylinder(0.006, (0, -0.011, 0.08 + (number + 0.2) * length), (0, 0.02, 0.08 + (number + 0.2) * length)),
+        b.cylinder(0.006, 0, (-0.011, 0.02), 0.08 + (number + 0.2) * length),
         look="wood",
     )
     parent = "stand"
@@ -551,12 +544,12 @@ def double_pendulum(b: ObjectBuilder, number: int, length: float) -> None:
         b.part(
             f"arm_{k}",
             beam(0.025, 0.008, (0, y, z), (0, y, z - length), Y),
-            [b.cylinder(0.018, (0, y - 0.004, q), (0, y + 0.004, q)) for q in (z, z - length)],
+            [b.cylinder(0.018, 0, (y - 0.004, y + 0.004), q) for q in (z, z - length)],
             look="red metal",
         )
-        b.cut(f"arm_{k}", b.cylinder(0.0075, (0, y - 0.01, z), (0, y + 0.01, z)))
+        b.cut(f"arm_{k}", b.cylinder(0.0075, 0, (y - 0.01, y + 0.01), z))
         if k < number - 1:
-            b.part(f"arm_{k}", b.cylinder(0.006, (0, y - 0.02, z - length), (0, y, z - length)))
+            b.part(f"arm_{k}", b.cylinder(0.006, 0, (y - 0.02, y), z - length))
         b.spin(f"arm_{k}", parent, Y, (0, y, z))
         parent = f"arm_{k}"
 
@@ -573,19 +566,19 @@ def cart_pole(b: ObjectBuilder, length: float) -> None:
         "cart",
         slab(0.08, 0.05, (0.031, 0.1)),
         [slab(0.08, (s * 0.05, s * 0.032), (0.005, 0.05)) for s in (-1, 1)],
-        b.cylinder(0.008, (0, -0.08, 0.08), (0, 0, 0.08)),
+        b.cylinder(0.008, 0, (-0.08, 0), 0.08),
         look="blue",
     )
     b.slide("cart", "rail", X, length / 2 - 0.11, lower=-length / 2 + 0.11)
     b.part(
         "pole",
         beam(0.025, 0.012, (0, -0.066, 0.08), (0, -0.066, 0.6), Y),
-        b.cylinder(0.02, (0, -0.072, 0.08), (0, -0.06, 0.08)),
-        b.cylinder(0.03, (0, -0.08, 0.62), (0, -0.052, 0.62)),
+        b.cylinder(0.02, 0, (-0.072, -0.06), 0.08),
+        b.cylinder(0.03, 0, (-0.08, -0.052), 0.62),
         look="red metal",
     )
-    b.cut("pole", b.cylinder(0.0095, (0, -1, 0.08), (0, 1, 0.08)))
-    b.hinge("pole", "cart", Y, (0, 0, 0.08), 1.5, lower=-1.5)
+    b.cut("pole", b.cylinder(0.0095, 0, (-1, 1), 0.08))
+    b.hinge("pole", "cart", Y, (0, 0, 0.08), 1.5, -1.5)
 
 
 @kind(words="rotary pendulum, rotary inverted pendulum", size=(0.8, 1.3))
@@ -596,18 +589,18 @@ def furuta_pendulum(b: ObjectBuilder, size: float) -> None:
         "arm",
         p.tube(0.025, 0.0125, 0.305, 0.335),
         p.beam(0.016, 0.016, (0.015, 0, 0.32), (0.18, 0, 0.32)),
-        p.cylinder(0.006, (0.17, 0, 0.32), (0.22, 0, 0.32)),
+        p.cylinder(0.006, (0.17, 0.22), 0, 0.32),
         look="red metal",
     )
     b.spin("arm", "base", Z, p(0, 0, 0))
     b.part(
         "pendulum",
         p.beam(0.012, 0.008, (0.21, 0, 0.32), (0.21, 0, 0.1), X),
-        p.cylinder(0.013, (0.202, 0, 0.32), (0.218, 0, 0.32)),
-        p.cylinder(0.022, (0.2, 0, 0.09), (0.22, 0, 0.09)),
+        p.cylinder(0.013, (0.202, 0.218), 0, 0.32),
+        p.cylinder(0.022, (0.2, 0.22), 0, 0.09),
         look="blue metal",
     )
-    b.cut("pendulum", p.cylinder(0.0078, (0, 0, 0.32), (1, 0, 0.32)))
+    b.cut("pendulum", p.cylinder(0.0078, (0, 1), 0, 0.32))
     b.spin("pendulum", "arm", X, p(0, 0, 0.32))
 
 
@@ -619,21 +612,21 @@ def ball_and_plate(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part("case", slab(w + 0.06, w + 0.06, (0, 0.1)), look="wood")
     b.cut("case", slab(w + 0.045, w + 0.045, (0.01, 1)))
-    b.bore("case", b.cylinder(0.0075, (-1, 0, 0.08), (1, 0, 0.08)))
+    b.bore("case", b.cylinder(0.0075, (-1, 1), 0, 0.08))
     b.part(
         "frame",
         slab(w + 0.03, w + 0.03, (0.07, 0.09)),
-        [b.cylinder(0.006, (s * (w + 0.025), 0, 0.08), (s * (w + 0.09), 0, 0.08)) for s in (-1, 1)],
-        b.cylinder(0.02, (w + 0.075, 0, 0.08), (w + 0.095, 0, 0.08)),
+        [b.cylinder(0.006, (s * (w + 0.025), s * (w + 0.09)), 0, 0.08) for s in (-1, 1)],
+        b.cylinder(0.02, (w + 0.075, w + 0.095), 0, 0.08),
         look="brown wood",
     )
     b.cut("frame", slab(w + 0.012, w + 0.012, (0, 1)))
-    b.bore("frame", b.cylinder(0.0075, (0, -w - 0.025, 0.08), (0, w + 0.025, 0.08)))
-    b.hinge("frame", "case", X, (0, 0, 0.08), 0.12, lower=-0.12)
+    b.bore("frame", b.cylinder(0.0075, 0, (-w - 0.025, w + 0.025), 0.08))
+    b.hinge("frame", "case", X, (0, 0, 0.08), 0.12, -0.12)
     b.part(
         "plate",
         slab(w, w, (0.074, 0.086)),
-        [b.cylinder(0.006, (0, s * (w - 0.005), 0.08), (0, s * (w + 0.023), 0.08)) for s in (-1, 1)],
+        [b.cylinder(0.006, 0, (s * (w - 0.005), s * (w + 0.023)), 0.08) for s in (-1, 1)],
         look="wood",
     )
     b.part(
@@ -643,7 +636,7 @@ def ball_and_plate(b: ObjectBuilder, width: float) -> None:
             for k in (1, 2, 3)
         ],
     )
-    b.hinge("plate", "frame", Y, (0, 0, 0.08), 0.12, lower=-0.12)
+    b.hinge("plate", "frame", Y, (0, 0, 0.08), 0.12, -0.12)
 
 
 @kind(words="flyball governor, watt governor", size=(0.8, 1.3))
@@ -666,7 +659,7 @@ def centrifugal_governor(b: ObjectBuilder, size: float) -> None:
             p.ball(0.025, (0, s * 0.105, 0.21)),
             look="brass",
         )
-        b.hinge(f"arm_{k}", "spindle", s * X, p(0, s * 0.025, 0.37), 0.6, lower=-0.1)
+        b.hinge(f"arm_{k}", "spindle", s * X, p(0, s * 0.025, 0.37), 0.6, -0.1)
     b.follow("arm_1", "arm_0")
 
 
@@ -677,18 +670,18 @@ def belt_drive(b: ObjectBuilder, radius: float) -> None:
         "frame",
         box((-1.4 * r, 0, -1.8 * r), (4.5 * r, 0.2 * r, -1.4 * r)),
         [box((x - 0.2 * r, 0, -1.5 * r), (x + 0.2 * r, 0.2 * r, 0.25 * r)) for x in (0, 3.4 * r)],
-        [b.cylinder(0.15 * r, (x, -0.7 * r, 0), (x, 0.05 * r, 0)) for x in (0, 3.4 * r)],
+        [b.cylinder(0.15 * r, x, (-0.7 * r, 0.05 * r), 0) for x in (0, 3.4 * r)],
         look="grey steel",
     )
     for name, x, q in (("pulley_0", 0, r), ("pulley_1", 3.4 * r, 0.6 * r)):
         b.part(
             name,
-            b.cylinder(q, (x, -0.15 * r, 0), (x, -0.03 * r, 0)),
-            b.cylinder(0.9 * q, (x, -0.45 * r, 0), (x, -0.1 * r, 0)),
-            b.cylinder(q, (x, -0.55 * r, 0), (x, -0.43 * r, 0)),
+            b.cylinder(q, x, (-0.15 * r, -0.03 * r), 0),
+            b.cylinder(0.9 * q, x, (-0.45 * r, -0.1 * r), 0),
+            b.cylinder(q, x, (-0.55 * r, -0.43 * r), 0),
             look=("metal", f"{'red' if x == 0 else 'blue'}"),
         )
-        b.cut(name, b.cylinder(0.17 * r, (x, -1, 0), (x, 1, 0)))
+        b.cut(name, b.cylinder(0.17 * r, x, (-1, 1), 0))
         b.spin(name, "frame", -Y, (x, 0, 0))
     b.follow("pulley_1", "pulley_0", 1.667)
 
@@ -703,24 +696,20 @@ def lead_screw(b: ObjectBuilder, length: float) -> None:
         "base",
         slab(L, 0.05, (0, 0.02)),
         [slab((s * L, s * (L - 0.02)), 0.05, (0.01, 0.08)) for s in (-1, 1)],
-        [b.cylinder(0.006, (-L + 0.01, y, 0.05), (L - 0.01, y, 0.05)) for y in (-0.035, 0.035)],
+        [b.cylinder(0.006, (-L + 0.01, L - 0.01), y, 0.05) for y in (-0.035, 0.035)],
         look="metal",
     )
-    b.bore("base", b.cylinder(0.0085, (-1, 0, 0.05), (1, 0, 0.05)))
+    b.bore("base", b.cylinder(0.0085, (-1, 1), 0, 0.05))
     b.part(
         "screw",
-        b.cylinder(0.007, (-L - 0.03, 0, 0.05), (L + 0.005, 0, 0.05)),
-        b.cylinder(0.018, (-L - 0.05, 0, 0.05), (-L - 0.025, 0, 0.05)),
+        b.cylinder(0.007, (-L - 0.03, L + 0.005), 0, 0.05),
+        b.cylinder(0.018, (-L - 0.05, -L - 0.025), 0, 0.05),
         look="steel",
     )
     lead, way = 0.008, 2 * L - 0.17  # of the nut per radian of the screw
     b.hinge("screw", "base", X, (0, 0, 0.05), way / lead, ajar=False)
     b.part("nut", slab((-L + 0.05, -L + 0.11), 0.048, (0.03, 0.085)), look="black metal")
-    b.cut(
-        "nut",
-        b.cylinder(0.0085, (-1, 0, 0.05), (1, 0, 0.05)),
-        [b.cylinder(0.0075, (-1, y, 0.05), (1, y, 0.05)) for y in (-0.035, 0.035)],
-    )
+    b.cut("nut", b.cylinder(0.0085, (-1, 1), 0, 0.05), [b.cylinder(0.0075, (-1, 1), y, 0.05) for y in (-0.035, 0.035)])
     b.slide("nut", "base", X, way)
     b.follow("nut", "screw", lead)
 
@@ -743,11 +732,11 @@ def pump_jack(b: ObjectBuilder, size: float) -> None:
         p.prism([(-1.2, 1.3), (-1.05, 1.25), (-1, 1.75), (-1.2, 1.8)], (0, 0, 0), 0.14, "y"),
         look="yellow steel",
     )
-    b.hinge("beam", "base", Y, p(0, 0, 1.5), 0.25, lower=-0.25)
+    b.hinge("beam", "base", Y, p(0, 0, 1.5), 0.25, -0.25)
     for k, s in enumerate((-1, 1)):
         b.part(
             f"crank_{k}",
-            p.cylinder(0.07, (0.95, s * 0.152, 0.45), (0.95, s * 0.22, 0.45)),
+            p.cylinder(0.07, 0.95, (s * 0.152, s * 0.22), 0.45),
             p.box((0.87, s * 0.16, 0.14), (1.03, s * 0.22, 0.5))
             if k < 0
             else p.beam(0.14, 0.06, (0.95, s * 0.19, 0.45), (0.95, s * 0.19, 0.76), Y),

@@ -45,7 +45,7 @@ def cable_car(b: ObjectBuilder) -> None:
     p = b.sized(size)
     b.part(
         "rope",
-        p.cylinder(0.03, (-3, 0, 3.6), (3, 0, 3.6)),
+        p.cylinder(0.03, (-3, 3), 0, 3.6),
         [p.slab((s * 3 - 0.15, s * 3 + 0.15), 0.2, (0, 3.8)) for s in (-1, 1)],
         look="steel",
     )
@@ -59,7 +59,7 @@ def cable_car(b: ObjectBuilder) -> None:
     b.slide("trolley", "rope", X, 1.6 * size, lower=-1.6 * size)
     b.part("cabin", p.slab(0.7, 0.6, (0.6, 2.4)), p.slab(0.05, 0.05, (2.39, 3.18)), look="red metal")
     b.cut("cabin", p.slab(0.65, 0.55, (0.65, 2.35)), p.slab(0.6, 1, (1.3, 2.2)), p.slab(0.3, (-1, 0), (0.7, 2.3)))
-    b.hinge("cabin", "trolley", Y, p(0, 0, 3.2), 0.2, lower=-0.2)
+    b.hinge("cabin", "trolley", Y, p(0, 0, 3.2), 0.2, -0.2)
     b.part("door", p.slab(0.34, (-0.65, -0.61), (0.68, 2.32)), look="glass")
     b.slide("door", "cabin", X, 0.33 * size)
 
@@ -95,7 +95,7 @@ def horse_carriage(b: ObjectBuilder) -> None:
         p.slab((0.88, 0.96), 0.24, (0.76, 0.84)),
         look="wood",
     )
-    b.hinge("shaft", "body", -Y, p(0.92, 0, 0.8), 0.4, lower=-0.2)
+    b.hinge("shaft", "body", -Y, p(0.92, 0, 0.8), 0.4, -0.2)
 
 
 @kind(walls=40, words="snow scooter")
@@ -112,21 +112,21 @@ def snowmobile(b: ObjectBuilder) -> None:
     for k, s in enumerate((-1, 1)):
         b.part(
             f"ski_{k}",
-            p.cylinder(0.03, (0.65, s * 0.35, 0.06), (0.65, s * 0.35, 0.178)),
+            p.cylinder(0.03, 0.65, s * 0.35, (0.06, 0.178)),
             p.box((0.2, s * 0.35 - 0.06, 0), (1.2, s * 0.35 + 0.06, 0.04)),
-            p.cylinder(0.05, (0.65, s * 0.35, 0.03), (0.65, s * 0.35, 0.08)),
+            p.cylinder(0.05, 0.65, s * 0.35, (0.03, 0.08)),
             look="black metal",
         )
-        b.hinge(f"ski_{k}", "body", Z, p(0.65, s * 0.35, 0), 0.4, lower=-0.4)
-    b.part("body", p.cylinder(0.04, (0.3, 0, 0.7), (0.3, 0, 0.82)))
+        b.hinge(f"ski_{k}", "body", Z, p(0.65, s * 0.35, 0), 0.4, -0.4)
+    b.part("body", p.cylinder(0.04, 0.3, 0, (0.7, 0.82)))
     b.part(
         "handlebar",
-        p.cylinder(0.05, (0.3, 0, 0.822), (0.3, 0, 0.88)),
-        p.rod(0.025, (0.2, -0.35, 0.92), (0.2, 0.35, 0.92)),
+        p.cylinder(0.05, 0.3, 0, (0.822, 0.88)),
+        p.rod(0.025, 0.2, (-0.35, 0.35), 0.92),
         p.beam(0.05, 0.05, (0.3, 0, 0.86), (0.19, 0, 0.92)),
         look="black steel",
     )
-    b.hinge("handlebar", "body", Z, p(0.3, 0, 0), 0.6, lower=-0.6)
+    b.hinge("handlebar", "body", Z, p(0.3, 0, 0), 0.6, -0.6)
 
 
 @kind(walls=20, words="gokart, go-kart, soap box, soapbox car")
@@ -151,7 +151,7 @@ def go_kart(b: ObjectBuilder) -> None:
         b.cylinder(0.02 * size, p(0.29, 0, 0.5) - 0.035 * size * up, p(0.29, 0, 0.5) + 0.01 * size * up),
         look="rubber",
     )
-    b.hinge("steering_wheel", "frame", up, p(0.29, 0, 0.5), 1.2, lower=-1.2)
+    b.hinge("steering_wheel", "frame", up, p(0.29, 0, 0.5), 1.2, -1.2)
     for i, (x, s) in enumerate([(x, s) for x in (-0.6, 0.55) for s in (-1, 1)]):
         wheel(b, f"wheel_{i}", "frame", p(x, s * 0.53, 0.14), 0.14 * size, 0.12 * size, s * Y, axle=0.02 * size)
 
@@ -174,20 +174,20 @@ def cement_truck(b: ObjectBuilder) -> None:
     b.part(
         "drum",
         p.cone(0.6, 1.1, (1.42, 0, 2.2), (0.3, 0, 2.3)),
-        p.cylinder(1.1, (0.31, 0, 2.3), (-0.6, 0, 2.3)),
-        p.cone(1.1, 0.45, (-0.59, 0, 2.3), (-2.6, 0, 2.3)),
+        p.cylinder(1.1, (0.31, -0.6), 0, 2.3),
+        p.cone(1.1, 0.45, (-0.59, -2.6), 0, 2.3),
         look="grey steel",
     )
-    b.cut("drum", p.cylinder(0.4, (-3, 0, 2.3), (0.8, 0, 2.3)), p.cylinder(1.02, (-0.5, 0, 2.3), (0.2, 0, 2.3)))
+    b.cut("drum", p.cylinder(0.4, (-3, 0.8), 0, 2.3), p.cylinder(1.02, (-0.5, 0.2), 0, 2.3))
     b.spin("drum", "truck", X, p(0, 0, 2.3))
     b.part(
         "chute",
-        p.cylinder(0.06, (-3.55, 0, 1.3), (-3.55, 0, 1.7)),
+        p.cylinder(0.06, -3.55, 0, (1.3, 1.7)),
         p.beam(0.3, 0.05, (-3.55, 0, 1.68), (-4.8, 0, 1.2)),
         look="black steel",
     )
     b.part("truck", p.slab((-3.6, -3.35), 0.1, (1.1, 1.27)))
-    b.hinge("chute", "truck", Z, p(-3.55, 0, 0), 1.2, lower=-1.2)
+    b.hinge("chute", "truck", Z, p(-3.55, 0, 0), 1.2, -1.2)
     for i, (x, s) in enumerate([(x, s) for x in (-2.2, -1, 2.7) for s in (-1, 1)]):
         wheel(b, f"wheel_{i}", "truck", p(x, s * 1.02, 0.5), 0.5 * size, 0.3 * size, s * Y, axle=0.02 * size)
 
@@ -206,7 +206,7 @@ def ladder_truck(b: ObjectBuilder) -> None:
     b.cut("truck", p.slab((-3.1, 1.5), 1.05, (0.9, 1.22)), p.slab((1.78, 3.12), 1.08, (0.68, 1.72)))
     b.part(
         "turntable",
-        p.cylinder(0.8, (-2, 0, 1.302), (-2, 0, 1.5)),
+        p.cylinder(0.8, -2, 0, (1.302, 1.5)),
         [p.box((-2.4, s * 0.5, 1.45), (-1.9, s * 0.4, 2.1)) for s in (-1, 1)],
         look="black steel",
     )
@@ -235,22 +235,22 @@ def planet_rover(b: ObjectBuilder, size: float) -> None:
     b.part(
         "body",
         p.slab(0.5, 0.35, (0.5, 0.75)),
-        p.cylinder(0.04, (0, -0.44, 0.55), (0, 0.44, 0.55)),
+        p.cylinder(0.04, 0, (-0.44, 0.44), 0.55),
         p.slab((-0.6, 0.3), 0.4, (0.75, 0.78)),
         look="white metal",
     )
     for k, s in enumerate((-1, 1)):
         b.part(
             f"rocker_{k}",
-            p.tube(0.07, 0.0425, (0, s * 0.37, 0.55), (0, s * 0.43, 0.55)),
+            p.tube(0.07, 0.0425, 0, (s * 0.37, s * 0.43), 0.55),
             p.beam(0.05, 0.05, (0.05, s * 0.4, 0.54), (0.6, s * 0.4, 0.25), Y),
             p.beam(0.05, 0.05, (-0.05, s * 0.4, 0.54), (-0.6, s * 0.4, 0.25), Y),
             p.beam(0.05, 0.05, (0, s * 0.4, 0.5), (0, s * 0.4, 0.25), Y),
-            [p.cylinder(0.025, (x, s * 0.38, 0.2), (x, s * 0.44, 0.2)) for x in (-0.6, 0, 0.6)],
+            [p.cylinder(0.025, x, (s * 0.38, s * 0.44), 0.2) for x in (-0.6, 0, 0.6)],
             [p.beam(0.04, 0.04, (x, s * 0.4, 0.26), (x, s * 0.4, 0.2), Y) for x in (-0.6, 0, 0.6)],
             look="metal",
         )
-        b.hinge(f"rocker_{k}", "body", Y, p(0, s * 0.4, 0.55), 0.2, lower=-0.2)
+        b.hinge(f"rocker_{k}", "body", Y, p(0, s * 0.4, 0.55), 0.2, -0.2)
         for i, x in enumerate((-0.6, 0, 0.6)):
             wheel(
                 b,
@@ -265,14 +265,14 @@ def planet_rover(b: ObjectBuilder, size: float) -> None:
             )
     b.part(
         "mast",
-        p.cylinder(0.03, (0.4, 0.2, 0.752), (0.4, 0.2, 1.2)),
+        p.cylinder(0.03, 0.4, 0.2, (0.752, 1.2)),
         [p.box((0.38, 0.2 + s * 0.06, 1.17), (0.42, 0.2 + s * 0.045, 1.3)) for s in (-1, 1)],
         p.box((0.38, 0.14, 1.17), (0.42, 0.26, 1.2)),
         look="white metal",
     )
     b.spin("mast", "body", Z, p(0.4, 0.2, 0))
     b.part("camera", p.box((0.36, 0.158, 1.225), (0.46, 0.242, 1.32)), look="black")
-    b.hinge("camera", "mast", Y, p(0.4, 0.2, 1.27), 0.3, lower=-0.3)
+    b.hinge("camera", "mast", Y, p(0.4, 0.2, 1.27), 0.3, -0.3)
 
 
 @kind(words="space probe, spacecraft, cubesat", size=(0.3, 1.5))
@@ -282,7 +282,7 @@ def satellite(b: ObjectBuilder, size: float) -> None:
     for k, s in enumerate((-1, 1)):
         b.part(
             f"arm_{k}",
-            p.cylinder(0.02, (s * 0.302, 0, 0.4), (s * 0.45, 0, 0.4)),
+            p.cylinder(0.02, (s * 0.302, s * 0.45), 0, 0.4),
             p.slab((s * 0.45, s * 1.1), 0.25, (0.385, 0.41)),
             look="dark blue metal",
         )
@@ -291,7 +291,7 @@ def satellite(b: ObjectBuilder, size: float) -> None:
         b.hinge(f"panel_{k}", f"arm_{k}", s * -Y, p(s * 1.101, 0, 0.41), 2.2)
     b.part("dish", p.cone(0.06, 0.25, 0.99, 1.1), p.cylinder(0.04, 0.93, 1), look="white metal")
     b.cut("dish", p.cone(0.03, 0.235, 1.02, 1.101))
-    b.hinge("dish", "bus", X, p(0, 0, 0.9), 0.25, lower=-0.25)
+    b.hinge("dish", "bus", X, p(0, 0, 0.9), 0.25, -0.25)
 
 
 @kind(words="self balancing scooter", size=(0.9, 1.1))
@@ -306,10 +306,10 @@ def segway(b: ObjectBuilder, size: float) -> None:
     b.part(
         "handle",
         p.beam(0.04, 0.04, (0, 0, 0.33), (0, 0.06, 1.15), Y),
-        p.rod(0.02, (-0.25, 0.06, 1.15), (0.25, 0.06, 1.15)),
+        p.rod(0.02, (-0.25, 0.25), 0.06, 1.15),
         look="steel",
     )
-    b.hinge("handle", "deck", X, p(0, 0, 0.352), 0.1, lower=-0.1)
+    b.hinge("handle", "deck", X, p(0, 0, 0.352), 0.1, -0.1)
     for k, s in enumerate((-1, 1)):
         wheel(b, f"wheel_{k}", "deck", p(s * 0.27, 0, 0.24), 0.24 * size, 0.1 * size, s * X, axle=0.02 * size)
 
@@ -327,21 +327,21 @@ def stroller(b: ObjectBuilder, size: float) -> None:
         [p.beam(0.025, 0.025, (s * 0.215, -0.3, 0.55), (s * 0.215, 0.35, 0.15), X) for s in (-1, 1)],
         [p.beam(0.025, 0.025, (s * 0.215, 0.35, 0.5), (s * 0.215, -0.3, 0.2), X) for s in (-1, 1)],
         [p.beam(0.025, 0.025, (s * 0.215, 0.25, 0.5), (s * 0.215, 0.6, 1), X) for s in (-1, 1)],
-        p.rod(0.015, (-0.22, 0.6, 1), (0.22, 0.6, 1)),
+        p.rod(0.015, (-0.22, 0.22), 0.6, 1),
         [p.box((s * 0.225, 0, 0.5), (s * 0.2, 0.08, 0.76)) for s in (-1, 1)],
         [p.box((s * 0.235, 0.3, 0.1), (s * 0.2, 0.4, 0.2)) for s in (-1, 1)],
         [p.box((s * 0.235, -0.34, 0.16), (s * 0.2, -0.26, 0.24)) for s in (-1, 1)],
         look="black metal",
     )
     b.cut("frame", p.slab(0.18, (-0.33, 0.28), (0.48, 1)))
-    b.part("hood", p.cylinder(0.3, (-0.238, 0.04, 0.72), (0.238, 0.04, 0.72)), look="blue")
+    b.part("hood", p.cylinder(0.3, (-0.238, 0.238), 0.04, 0.72), look="blue")
     b.cut(
         "hood",
-        p.cylinder(0.285, (-0.2385 + 0.008, 0.04, 0.72), (0.2305, 0.04, 0.72)),
+        p.cylinder(0.285, (-0.2385 + 0.008, 0.2305), 0.04, 0.72),
         p.slab(1, 1, (0, 0.735)),
         p.slab(1, (-1, -0.02), (0, 2)),
     )
-    b.hinge("hood", "frame", X, p(0, 0.04, 0.735), 0.8, lower=0)
+    b.hinge("hood", "frame", X, p(0, 0.04, 0.735), 0.8, 0)
     for k, (y, s) in enumerate([(y, s) for y in (-0.3, 0.35) for s in (-1, 1)]):
         wheel(b, f"wheel_{k}", "frame", p(s * 0.265, y, 0.14), 0.14 * size, 0.04 * size, s * X, axle=0.008 * size)
 
@@ -396,12 +396,12 @@ def semaphore(b: ObjectBuilder, height: float) -> None:
         "mast",
         slab(0.2, 0.2, (0, 0.05)),
         b.cylinder(0.05, 0.04, height + 0.1),
-        b.cylinder(0.02, (0, 0, height - 0.1), (0, -0.1, height - 0.1)),
+        b.cylinder(0.02, 0, (0, -0.1), height - 0.1),
         look="white steel",
     )
     b.part("arm", box((-0.1, -0.09, height - 0.17), (0.6, -0.075, height - 0.03)), look="red steel")
-    b.cut("arm", b.cylinder(0.022, (0, -1, height - 0.1), (0, 1, height - 0.1)))
-    b.hinge("arm", "mast", Y, (0, 0, height - 0.1), 0.8, lower=0)
+    b.cut("arm", b.cylinder(0.022, 0, (-1, 1), height - 0.1))
+    b.hinge("arm", "mast", Y, (0, 0, height - 0.1), 0.8, 0)
 
 
 @kind("railroad switch", words="railway switch, rail points, track switch")
@@ -431,7 +431,7 @@ def rail_switch(b: ObjectBuilder) -> None:
     b.part(
         "lever",
         p.beam(0.08, 0.08, (0, 1.6, 0.14), (0, 1.6, 1), Y),
-        p.cylinder(0.1, (0, 1.5, 0.9), (0, 1.7, 0.9)),
+        p.cylinder(0.1, 0, (1.5, 1.7), 0.9),
         look="red steel",
     )
-    b.hinge("lever", "bed", X, p(0, 1.6, 0.14), 0.6, lower=-0.6)
+    b.hinge("lever", "bed", X, p(0, 1.6, 0.14), 0.6, -0.6)

@@ -99,13 +99,7 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
         )
 
 
-@kind(
-    walls=47,
-    words="pickup, truck, toy truck",
-    length=(4.0, 5.5),
-    width=(1.7, 2.0),
-    radius=(0.32, 0.42),
-)
+@kind(walls=47, words="pickup, truck, toy truck", length=(4.0, 5.5), width=(1.7, 2.0), radius=(0.32, 0.42))
 def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -> None:
     """A cab, a bed with a tailgate, four wheels."""
     b.part(
@@ -239,7 +233,7 @@ def skateboard(b: ObjectBuilder, length: float, width: float, radius: float) -> 
     b.part(
         "deck",
         slab(length / 2, width / 2, (0.1, 0.112)),
-        [b.cylinder(width / 2, (s * length / 2, 0, 0.1), (s * length / 2, 0, 0.112)) for s in (-1, 1)],
+        [b.cylinder(width / 2, s * length / 2, 0, (0.1, 0.112)) for s in (-1, 1)],
         [block((s * 0.3 * length, 0, 0.095), (0.08, 0.06, 0.012)) for s in (-1, 1)],
         look="wood",
     )
@@ -250,10 +244,10 @@ def skateboard(b: ObjectBuilder, length: float, width: float, radius: float) -> 
         b.part(
             name,
             slab((x - 0.015, x + 0.015), 0.38 * width, (radius - 0.008, radius + 0.008)),
-            b.cylinder(0.012, (x, 0, radius), (x, 0, 0.085 - g)),
+            b.cylinder(0.012, x, 0, (radius, 0.085 - g)),
             look="metal",
         )
-        b.hinge(name, "deck", X, (x, 0, 0.07), 0.2, lower=-0.2, ajar=False)
+        b.hinge(name, "deck", X, (x, 0, 0.07), 0.2, -0.2, ajar=False)
         for q in (-1, 1):
             wheel(
                 b,
@@ -305,7 +299,7 @@ def shopping_cart(b: ObjectBuilder, length: float, width: float, height: float) 
             )
             for s in (-1, 1)
         ],
-        b.cylinder(0.014, (-length / 2 - 0.12, -width / 2, height), (-length / 2 - 0.12, width / 2, height)),
+        b.cylinder(0.014, -length / 2 - 0.12, (-width / 2, width / 2), height),
     )
     leaf(
         b,
@@ -341,9 +335,9 @@ def motor_boat(b: ObjectBuilder, length: float) -> None:
         "outboard",
         slab((x - 0.1 * length, x), 0.04 * length, (0.12 * length, 0.26 * length)),
         slab((x - 0.07 * length, x - 0.03 * length), 0.015 * length, (-0.1 * length, 0.13 * length)),
-        b.cylinder(0.02 * length, (x - 0.09 * length, 0, -0.07 * length), (x - 0.02 * length, 0, -0.07 * length)),
+        b.cylinder(0.02 * length, (x - 0.09 * length, x - 0.02 * length), 0, -0.07 * length),
     )
-    b.hinge("outboard", "hull", Z, (x, 0, 0), 0.45, lower=-0.45, ajar=False)
+    b.hinge("outboard", "hull", Z, (x, 0, 0), 0.45, -0.45, ajar=False)
     rotor(b, "propeller", "outboard", (x - 0.09 * length, 0, -0.07 * length), -X, 0.06 * length, 3, wide=0.5)
     at = vector(0, 0.06 * length, 0.24 * length)
     b.part(
@@ -416,18 +410,18 @@ def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height
         handle=b.maybe(),
     )
     x = length / 2 + 0.6
-    b.part("bed", b.tube(0.035, 0.022 if b.style.has_bore else 0.002, (x, 0.07, z - 0.1), (x, 0.07, z + 0.15)))
+    b.part("bed", b.tube(0.035, 0.022 if b.style.has_bore else 0.002, x, 0.07, (z - 0.1, z + 0.15)))
     g = b.gap(0.02) + 0.0005
     b.part(
         "jockey",
-        b.cylinder(0.022 - (1.5 * g if b.style.has_bore else 0), (x, 0.07, 0.14), (x, 0.07, z + 0.2)),
+        b.cylinder(0.022 - (1.5 * g if b.style.has_bore else 0), x, 0.07, (0.14, z + 0.2)),
         [beam(0.03, 0.006, (x, 0.07 + s, 0.15), (x, 0.07 + s, 0.06), Y) for s in (-0.035, 0.035)],
         block((x, 0.07, 0.15), (0.04, 0.08, 0.02)),
         look="steel",
     )
     b.slide("jockey", "bed", Z, 0.05, ajar=False)
-    b.part("jockey_wheel", b.cylinder(0.08, (x, 0.045, 0.07), (x, 0.095, 0.07)), look="rubber")
-    b.cut("jockey", b.cylinder(0.085, (x, 0.043, 0.07), (x, 0.097, 0.07)))
+    b.part("jockey_wheel", b.cylinder(0.08, x, (0.045, 0.095), 0.07), look="rubber")
+    b.cut("jockey", b.cylinder(0.085, x, (0.043, 0.097), 0.07))
     b.spin("jockey_wheel", "jockey", Y, (x, 0.07, 0.07))
 
 
@@ -443,7 +437,7 @@ def windmill(b: ObjectBuilder, height: float) -> None:
     b.part(
         "cap",
         b.cone(0.16 * height, 0.05 * height, 0.8 * height + g, height),
-        b.cylinder(0.03 * height, (0, 0, 0.87 * height), (0, -0.24 * height, 0.87 * height)),
+        b.cylinder(0.03 * height, 0, (0, -0.24 * height), 0.87 * height),
         look="wood",
     )
     b.spin("cap", "tower", Z, (0, 0, 0.8 * height))
@@ -474,7 +468,7 @@ def mailbox(b: ObjectBuilder, width: float, length: float, height: float) -> Non
     b.part(
         "box",
         slab(width / 2, (0, length), (height, height + width)),
-        b.cylinder(width / 2, (0, 0, height + width), (0, length, height + width)),
+        b.cylinder(width / 2, 0, (0, length), height + width),
         slab(0.04, (0.4 * length, 0.4 * length + 0.08), (0, height + 0.01)),
         look="steel",
     )
@@ -482,7 +476,7 @@ def mailbox(b: ObjectBuilder, width: float, length: float, height: float) -> Non
     b.part(
         "door",
         slab(width / 2, (-0.01 - g, -g), (height, height + width)),
-        b.cylinder(width / 2, (0, -0.01 - g, height + width), (0, -g, height + width)),
+        b.cylinder(width / 2, 0, (-0.01 - g, -g), height + width),
         look="steel",
     )
     grip(b, "door", (0, -0.01 - g, height + 1.2 * width), -Y, X, 0.04)
@@ -523,11 +517,7 @@ def greenhouse(b: ObjectBuilder, width: float, length: float) -> None:
     b.slide("door", "frame", X, 0.7)
 
 
-@kind(
-    words="grill, bbq, charcoal grill, kettle grill, bbq grill, barbecue grill",
-    radius=(0.2, 0.32),
-    z=(0.6, 0.75),
-)
+@kind(words="grill, bbq, charcoal grill, kettle grill, bbq grill, barbecue grill", radius=(0.2, 0.32), z=(0.6, 0.75))
 def barbecue(b: ObjectBuilder, radius: float, z: float) -> None:
     """A bowl with a lid, vents that turn, a tray, wheels."""
     b.part(

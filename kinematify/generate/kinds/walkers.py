@@ -330,8 +330,12 @@ def snake(w: Workshop, segments: int, radius: float, segment: float, clearance: 
         name = f"segment_{k + 1}"
         body = cylinder(
             radius,
-            (start + (0.0 if first else 1.6 * space + 0.5 * radius), 0, radius),
-            (end - (0.0 if last else 1.6 * space + 0.5 * radius), 0, radius),
+            (
+                start + (0.0 if first else 1.6 * space + 0.5 * radius),
+                end - (0.0 if last else 1.6 * space + 0.5 * radius),
+            ),
+            0,
+            radius,
         )
         w.body(name, body)
         if not first:
@@ -348,5 +352,5 @@ def snake(w: Workshop, segments: int, radius: float, segment: float, clearance: 
             w.add(f"segment_{k + 1}", reach)
             axis = (0, 0, 1) if upright else (0, 1, 0)
             w.turns(f"segment_{k + 1}", f"segment_{k}", axis, (start, 0, radius), (-0.7, 0.7))
-    w.add("segment_1", rod(0.8 * radius, (0, 0, radius), (-0.6 * radius, 0, radius)))
+    w.add("segment_1", rod(0.8 * radius, (0, -0.6 * radius), 0, radius))
     w.settle()

@@ -25,11 +25,8 @@ def platform_cart(b: ObjectBuilder, width: float, depth: float, radius: float) -
         h = b.draw(0.6, 1)
         bar = b.draw(0.01, 0.02)
         for s in (-1, 1):
-            b.part(
-                "deck",
-                b.cylinder(bar, (s * 0.42 * width, depth - 0.03, top), (s * 0.42 * width, depth - 0.03, top + h)),
-            )
-        b.part("deck", b.cylinder(bar, (-0.42 * width, depth - 0.03, top + h), (0.42 * width, depth - 0.03, top + h)))
+            b.part("deck", b.cylinder(bar, s * 0.42 * width, depth - 0.03, (top, top + h)))
+        b.part("deck", b.cylinder(bar, (-0.42 * width, 0.42 * width), depth - 0.03, top + h))
     wide = b.draw(0.3, 0.6) * radius
     for k, s in enumerate((-1, 1)):
         in_fork(b, f"wheel_{k}", "deck", (s * 0.38 * width, 0.85 * depth, radius), radius, wide, top + 0.005)
@@ -126,18 +123,18 @@ def tilting_screen(
     post = z + 0.35 * height
     play = seam(b, 2 * radius, radius)
     if kind == "swivels":
-        b.part("foot", b.cylinder(2 * radius, (0, y, 0), (0, y, 0.04)))
+        b.part("foot", b.cylinder(2 * radius, 0, y, (0, 0.04)))
         low = 0.04 + play
         b.part(
             "screen",
-            b.cylinder(radius, (0, y, low), (0, y, post)),
+            b.cylinder(radius, 0, y, (low, post)),
             slab(radius, (0, y), (post - 2 * radius, post + 2 * radius)),
         )
         b.hinge("screen", "foot", Z, (0, y, low), b.draw(0.5, 1.6), lower=-b.draw(0.5, 1.6), ajar=False)
     elif kind == "tilts":
         b.part("foot", slab(radius, (y, y + 2 * radius), (0, post + radius)))
         g = max(play, 0) if b.style.has_bore else play
-        b.part("screen", b.rod(radius, (-2 * radius, y - radius - g, post), (2 * radius, y - radius - g, post)))
+        b.part("screen", b.rod(radius, (-2 * radius, 2 * radius), y - radius - g, post))
         b.hinge("screen", "foot", X, (0, y - radius - g, post), min(0.3, 2 * radius / height), lower=-0.4, ajar=False)
     else:
         b.part("foot", slab(radius, (y, y + radius), (0, post + 0.2 * height)))

@@ -19,7 +19,7 @@ def ratchet_wrench(b: ObjectBuilder, length: float) -> None:
         "handle",
         b.cylinder(0.018, 0, 0.022),
         beam(0.014, 0.012, (0.01, 0, 0.011), (0.6 * length, 0, 0.011)),
-        b.rod(0.011, (0.5 * length, 0, 0.011), (length, 0, 0.011)),
+        b.rod(0.011, (0.5 * length, length), 0, 0.011),
         look="chrome",
     )
     b.bore("handle", b.cylinder(0.0085, -0.01, 0.012))
@@ -32,7 +32,7 @@ def ratchet_wrench(b: ObjectBuilder, length: float) -> None:
         beam(0.005, 0.003, (0, 0, 0.0255), (-0.014, 0, 0.0255)),
         look="black steel",
     )
-    b.hinge("lever", "handle", Z, (0, 0, 0), 0.6, lower=-0.6)
+    b.hinge("lever", "handle", Z, (0, 0, 0), 0.6, -0.6)
 
 
 @kind(words="tube cutter", size=(0.9, 1.3))
@@ -42,22 +42,22 @@ def pipe_cutter(b: ObjectBuilder, size: float) -> None:
         "frame",
         p.slab((-0.012, 0.06), 0.01, (0, 0.012)),
         p.slab((-0.012, -0.002), 0.01, (0, 0.06)),
-        [p.cylinder(0.006, (x, -0.009, 0.016), (x, 0.009, 0.016)) for x in (0.035, 0.052)],
+        [p.cylinder(0.006, x, (-0.009, 0.009), 0.016) for x in (0.035, 0.052)],
         p.slab((-0.024, -0.01), 0.01, (0, 0.03)),
         look="blue metal",
     )
-    b.bore("frame", p.cylinder(0.0052, (-0.05, 0, 0.015), (0, 0, 0.015)))
+    b.bore("frame", p.cylinder(0.0052, (-0.05, 0), 0, 0.015))
     b.part(
         "screw",
-        p.cylinder(0.004, (-0.05, 0, 0.015), (-0.003, 0, 0.015)),
-        p.cylinder(0.012, (-0.065, 0, 0.015), (-0.045, 0, 0.015)),
+        p.cylinder(0.004, (-0.05, -0.003), 0, 0.015),
+        p.cylinder(0.012, (-0.065, -0.045), 0, 0.015),
         look="steel",
     )
     b.spin("screw", "frame", X, p(0, 0, 0.015))
     b.part(
         "jaw",
         p.slab((0.001, 0.018), 0.01, (0.0125, 0.04)),
-        p.cylinder(0.01, (0.02, -0.002, 0.028), (0.02, 0.002, 0.028)),
+        p.cylinder(0.01, 0.02, (-0.002, 0.002), 0.028),
         look="steel",
     )
     b.slide("jaw", "frame", X, 0.003)
@@ -75,8 +75,8 @@ def toggle_clamp(b: ObjectBuilder, size: float) -> None:
     b.part(
         "arm",
         p.beam(0.016, 0.008, (-0.01, 0, 0.032), (0.07, 0, 0.032)),
-        p.cylinder(0.004, (0.065, 0, 0.006), (0.065, 0, 0.034)),
-        p.cylinder(0.007, (0.065, 0, 0.004), (0.065, 0, 0.01)),
+        p.cylinder(0.004, 0.065, 0, (0.006, 0.034)),
+        p.cylinder(0.007, 0.065, 0, (0.004, 0.01)),
         look="steel",
     )
     b.hinge("arm", "base", -Y, p(0.012, 0, 0.032), 1.3)
@@ -96,22 +96,22 @@ def caulking_gun(b: ObjectBuilder, length: float) -> None:
         "frame",
         slab((-0.03, -0.024), 0.03, 0.03),
         [slab((-0.03, length), (s * 0.026, s * 0.03), 0.004) for s in (-1, 1)],
-        b.tube(0.03, 0.012, (length - 0.006, 0, 0), (length, 0, 0)),
+        b.tube(0.03, 0.012, (length - 0.006, length), 0, 0),
         slab((-0.06, -0.024), 0.012, (-0.02, 0.025)),
         beam(0.02, 0.02, (-0.05, 0, -0.015), (-0.08, 0, -0.12), Y),
         look="red steel",
     )
-    b.bore("frame", b.cylinder(0.0055, (-0.2, 0, 0), (0, 0, 0)), slab((-0.055, -0.028), 0.0055, (-0.03, -0.006)))
+    b.bore("frame", b.cylinder(0.0055, (-0.2, 0), 0, 0), slab((-0.055, -0.028), 0.0055, (-0.03, -0.006)))
     b.part(
         "rod",
-        b.cylinder(0.004, (-0.2, 0, 0), (0.02, 0, 0)),
-        b.cylinder(0.022, (0.016, 0, 0), (0.022, 0, 0)),
+        b.cylinder(0.004, (-0.2, 0.02), 0, 0),
+        b.cylinder(0.022, (0.016, 0.022), 0, 0),
         beam(0.008, 0.006, (-0.195, 0, 0), (-0.2, 0, -0.05), Y),
         look="steel",
     )
     b.slide("rod", "frame", X, 0.12)
     b.part("trigger", beam(0.009, 0.009, (-0.036, 0, -0.012), (-0.045, 0, -0.1), Y), look="black steel")
-    b.hinge("trigger", "frame", Y, (-0.036, 0, -0.012), 0.08, lower=-0.1)
+    b.hinge("trigger", "frame", Y, (-0.036, 0, -0.012), 0.08, -0.1)
 
 
 @kind(words="tacker", size=(0.9, 1.2))
@@ -127,7 +127,7 @@ def staple_gun(b: ObjectBuilder, size: float) -> None:
         look="steel",
     )
     b.part("lever", p.beam(0.013, 0.012, (0.138, 0, 0.113), (-0.01, 0, 0.14)), look="black steel")
-    b.hinge("lever", "body", -Y, p(0.138, 0, 0.113), 0.12, lower=-0.3)
+    b.hinge("lever", "body", -Y, p(0.138, 0, 0.113), 0.12, -0.3)
 
 
 @kind(words="hot air gun", size=(0.9, 1.2))
@@ -135,8 +135,8 @@ def heat_gun(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
         "body",
-        p.cylinder(0.035, (-0.06, 0, 0.16), (0.1, 0, 0.16)),
-        p.cone(0.033, 0.018, (0.1, 0, 0.16), (0.18, 0, 0.16)),
+        p.cylinder(0.035, (-0.06, 0.1), 0, 0.16),
+        p.cone(0.033, 0.018, (0.1, 0.18), 0, 0.16),
         p.beam(0.03, 0.04, (-0.01, 0, 0.14), (-0.03, 0, 0), X),
         look="orange",
     )
@@ -151,7 +151,7 @@ def circular_saw(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
         "body",
-        p.cylinder(0.05, (0, 0.02, 0.1), (0, 0.14, 0.1)),
+        p.cylinder(0.05, 0, (0.02, 0.14), 0.1),
         p.beam(0.03, 0.03, (0, 0.07, 0.14), (-0.1, 0.07, 0.2)),
         p.beam(0.03, 0.03, (-0.1, 0.07, 0.2), (-0.14, 0.07, 0.1)),
         p.slab(0.05, (0.03, 0.1), (0.03, 0.1)),
@@ -159,19 +159,14 @@ def circular_saw(b: ObjectBuilder, size: float) -> None:
         look="green",
     )
     b.cut("body", p.slab(0.13, (-0.02, 0.0115), (0, 0.2)))
-    b.part(
-        "blade",
-        p.cylinder(0.085, (0, 0.001, 0.1), (0, 0.003, 0.1)),
-        p.cylinder(0.012, (0, -0.008, 0.1), (0, 0.011, 0.1)),
-        look="steel",
-    )
+    b.part("blade", p.cylinder(0.085, 0, (0.001, 0.003), 0.1), p.cylinder(0.012, 0, (-0.008, 0.011), 0.1), look="steel")
     b.spin("blade", "body", -Y, p(0, 0, 0.1))
-    b.part("guard", p.cylinder(0.098, (0, -0.006, 0.1), (0, 0.0095, 0.1)), look="grey metal")
+    b.part("guard", p.cylinder(0.098, 0, (-0.006, 0.0095), 0.1), look="grey metal")
     b.cut(
         "guard",
-        p.cylinder(0.091, (0, -0.0035, 0.1), (0, 0.0065, 0.1)),
+        p.cylinder(0.091, 0, (-0.0035, 0.0065), 0.1),
         p.slab(0.2, 0.1, (0.1, 0.4)),
-        p.cylinder(0.02, (0, -0.1, 0.1), (0, 0.1, 0.1)),
+        p.cylinder(0.02, 0, (-0.1, 0.1), 0.1),
         p.slab(0.2, (0.0062, 0.02), (-0.1, 0.3)),
     )
     b.hinge("guard", "body", Y, p(0, 0, 0.1), 1.6)
@@ -186,20 +181,20 @@ def chainsaw(b: ObjectBuilder, size: float) -> None:
         p.rod(0.012, (-0.09, 0, 0.13), (-0.16, 0, 0.2)),
         p.rod(0.012, (-0.16, 0, 0.2), (-0.28, 0, 0.14)),
         p.rod(0.012, (-0.28, 0, 0.14), (-0.26, 0, 0.04)),
-        p.rod(0.012, (-0.26, 0, 0.04), (-0.09, 0, 0.04)),
+        p.rod(0.012, (-0.26, -0.09), 0, 0.04),
         p.slab((0.09, 0.45), 0.006, (0.03, 0.09)),
-        p.cylinder(0.03, (0.45, -0.006, 0.06), (0.45, 0.006, 0.06)),
+        p.cylinder(0.03, 0.45, (-0.006, 0.006), 0.06),
         [p.box((0.04, s * 0.06, 0.13), (0.06, s * 0.07, 0.16)) for s in (-1, 1)],
         look="orange",
     )
     b.part("brake", p.slab((0.055, 0.063), 0.056, (0.145, 0.23)), look="black")
-    b.hinge("brake", "body", Y, p(0.059, 0, 0.15), 0.5, lower=-0.2)
-    b.bore("body", p.cylinder(0.0085, (-0.03, -0.1, 0.07), (-0.03, -0.02, 0.07)))
+    b.hinge("brake", "body", Y, p(0.059, 0, 0.15), 0.5, -0.2)
+    b.bore("body", p.cylinder(0.0085, -0.03, (-0.1, -0.02), 0.07))
     b.part(
         "starter",
-        p.cylinder(0.006, (-0.03, -0.075, 0.07), (-0.03, -0.025, 0.07)),
-        p.rod(0.01, (-0.06, -0.095, 0.07), (0, -0.095, 0.07)),
-        p.cylinder(0.006, (-0.03, -0.09, 0.07), (-0.03, -0.07, 0.07)),
+        p.cylinder(0.006, -0.03, (-0.075, -0.025), 0.07),
+        p.rod(0.01, (-0.06, 0), -0.095, 0.07),
+        p.cylinder(0.006, -0.03, (-0.09, -0.07), 0.07),
         look="black",
     )
     b.slide("starter", "body", -Y, 0.04)
@@ -223,7 +218,7 @@ def band_saw(b: ObjectBuilder, height: float) -> None:
     b.cut("table", box((0.03, -0.2, 0.4), (0.09, 0.14, 0.5)))
     b.cut("frame", box((0.097, 0, 0.42), (0.145, 0.2, 0.48)))
     b.part("frame", box((0.145, 0.03, 0.4), (0.17, 0.12, 0.45)))
-    b.hinge("table", "frame", Y, (0.12, 0, 0.44), 0.05, lower=-0.02)
+    b.hinge("table", "frame", Y, (0.12, 0, 0.44), 0.05, -0.02)
     leaf(b, "door", "frame", (-0.29, -0.07, 0.01), (0.29, -0.052, 0.39), hinge=-X, out=-Y, reach=1.8, material="steel")
     b.part(
         "guide",
@@ -252,7 +247,7 @@ def saw_horse(b: ObjectBuilder, width: float, height: float) -> None:
         beam(0.05, 0.02, (-0.85 * w, 0.65 * lean, 0.4 * height), (0.85 * w, 0.65 * lean, 0.4 * height)),
         look="wood",
     )
-    b.hinge("back", "front", X, (0, 0, height + 0.05), 0.15, lower=0)
+    b.hinge("back", "front", X, (0, 0, height + 0.05), 0.15, 0)
 
 
 @kind(words="portable workbench, work stand, bench with a vise jaw", width=(0.55, 0.75), height=(0.72, 0.85))
@@ -292,13 +287,8 @@ def engine_hoist(b: ObjectBuilder, size: float) -> None:
         look="red steel",
     )
     b.part("boom", p.slab(0.045, (-1.1, 0.1), (1.45, 1.53)), look="red steel")
-    b.hinge("boom", "base", -X, p(0, 0.06, 1.49), 0.5, lower=-0.05)
-    b.part(
-        "hook",
-        p.cylinder(0.012, (0, -1, 1.33), (0, -1, 1.448)),
-        p.torus(0.04, 0.012, (0, -1, 1.29), X),
-        look="black steel",
-    )
+    b.hinge("boom", "base", -X, p(0, 0.06, 1.49), 0.5, -0.05)
+    b.part("hook", p.cylinder(0.012, 0, -1, (1.33, 1.448)), p.torus(0.04, 0.012, (0, -1, 1.29), X), look="black steel")
     b.spin("hook", "boom", Z, p(0, -1, 0))
     for k, (x, y) in enumerate(((-0.35, -1.1), (0.35, -1.1), (-0.35, 0.06), (0.35, 0.06))):
         caster(b, f"caster_{k}", "base", p(x, y, 0.1), 0.1 * size)
@@ -309,20 +299,16 @@ def air_compressor(b: ObjectBuilder, length: float) -> None:
     r = 0.16
     b.part(
         "tank",
-        b.rod(r, (-length / 2 + r, 0, 0.26), (length / 2 - r, 0, 0.26)),
+        b.rod(r, (-length / 2 + r, length / 2 - r), 0, 0.26),
         slab(0.15, 0.1, (0.4, 0.6)),
         [box((length / 2 - 0.2, s * 0.1 - 0.015, 0), (length / 2 - 0.17, s * 0.1 + 0.015, 0.2)) for s in (-1, 1)],
-        b.cylinder(0.012, (-0.3 * length, -0.2, 0.09), (-0.3 * length, 0.2, 0.09)),
+        b.cylinder(0.012, -0.3 * length, (-0.2, 0.2), 0.09),
         slab((-0.3 * length - 0.02, -0.3 * length + 0.02), 0.1, (0.08, 0.16)),
         look="red steel",
     )
     for k, s in enumerate((-1, 1)):
-        b.part(
-            f"wheel_{k}",
-            b.cylinder(0.09, (-0.3 * length, s * 0.145, 0.09), (-0.3 * length, s * 0.19, 0.09)),
-            look="rubber",
-        )
-        b.cut(f"wheel_{k}", b.cylinder(0.0135, (-0.3 * length, -1, 0.09), (-0.3 * length, 1, 0.09)))
+        b.part(f"wheel_{k}", b.cylinder(0.09, -0.3 * length, (s * 0.145, s * 0.19), 0.09), look="rubber")
+        b.cut(f"wheel_{k}", b.cylinder(0.0135, -0.3 * length, (-1, 1), 0.09))
         b.spin(f"wheel_{k}", "tank", s * Y, (-0.3 * length, 0, 0.09))
     knob(b, "valve", "tank", (0, -0.1, 0.5), 0.02, -Y, high=0.03)
     bail(b, "handle", "tank", (0.15, -0.1, 0.56), (0.15, 0.1, 0.56), 0.25, 0.02, X, lower=-0.6, upper=0.2)
@@ -345,8 +331,8 @@ def bellows(b: ObjectBuilder, size: float) -> None:
     b.part(
         "lower_board",
         board(0.12, 0.008),
-        p.cylinder(0.012, (0, 0.06, 0.012), (0, 0.13, 0.012)),
-        p.cone(0.006, 0.012, (0, -0.02, 0.012), (0, 0.07, 0.012)),
+        p.cylinder(0.012, 0, (0.06, 0.13), 0.012),
+        p.cone(0.006, 0.012, 0, (-0.02, 0.07), 0.012),
         look="wood",
     )
     b.part("board", board(0.13, 0.035), look="wood")
@@ -362,17 +348,14 @@ def multimeter(b: ObjectBuilder, size: float) -> None:
     b.hinge("stand", "case", X, p(0, 0.036, 0.12), 0.7)
 
 
-@kind(
-    width=(0.25, 0.4),
-    number=whole(1, 6, default=4, usual=(3, 6), words="knob, dial"),
-)
+@kind(width=(0.25, 0.4), number=whole(1, 6, default=4, usual=(3, 6), words="knob, dial"))
 def oscilloscope(b: ObjectBuilder, width: float, number: int) -> None:
     h = 0.16
     b.part(
         "case",
         slab(width / 2, (0, 0.25), (0.01, h)),
         box((-0.45 * width, -0.003, 0.4 * h), (-0.02, 0.001, 0.92 * h)),
-        [b.cylinder(0.01, (x, y, 0), (x, y, 0.011)) for x in (-0.4 * width, 0.4 * width) for y in (0.03, 0.22)],
+        [b.cylinder(0.01, x, y, (0, 0.011)) for x in (-0.4 * width, 0.4 * width) for y in (0.03, 0.22)],
         look="grey metal",
     )
     b.cut("case", slab(width / 2 - 0.004, (0.08, 0.24), (0.015, h - 0.005)))
@@ -430,17 +413,17 @@ def micrometer(b: ObjectBuilder, size: float) -> None:
         ],
         p.slab((0.03, 0.045), (-0.006, 0.012), 0.006),
         p.slab((-0.045, -0.03), (-0.006, 0.012), 0.006),
-        p.cylinder(0.006, (0.03, 0.006, 0), (0.075, 0.006, 0)),
-        p.cylinder(0.003, (-0.035, 0.006, 0), (-0.01, 0.006, 0)),
+        p.cylinder(0.006, (0.03, 0.075), 0.006, 0),
+        p.cylinder(0.003, (-0.035, -0.01), 0.006, 0),
         look="steel",
     )
-    b.bore("frame", p.cylinder(0.0042, (0, 0.006, 0), (0.2, 0.006, 0)))
-    b.part("spindle", p.cylinder(0.0032, (-0.005, 0.006, 0), (0.1, 0.006, 0)), look="steel")
+    b.bore("frame", p.cylinder(0.0042, (0, 0.2), 0.006, 0))
+    b.part("spindle", p.cylinder(0.0032, (-0.005, 0.1), 0.006, 0), look="steel")
     b.slide("spindle", "frame", X, 0.03)
     b.part(
         "thimble",
-        p.tube(0.009, 0.0072, (0.05, 0.006, 0), (0.085, 0.006, 0)),
-        p.tube(0.009, 0.004, (0.0855 - 0.001, 0.006, 0), (0.095, 0.006, 0)),
+        p.tube(0.009, 0.0072, (0.05, 0.085), 0.006, 0),
+        p.tube(0.009, 0.004, (0.0855 - 0.001, 0.095), 0.006, 0),
         look="chrome",
     )
     b.spin("thimble", "spindle", X, p(0, 0.006, 0))
@@ -451,20 +434,20 @@ def dial_indicator(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
         "case",
-        b.cylinder(r, (0, 0, 0), (0, 0.5 * r, 0)),
-        b.cylinder(0.2 * r, (0, 0.25 * r, -0.9 * r), (0, 0.25 * r, -1.5 * r)),
+        b.cylinder(r, 0, (0, 0.5 * r), 0),
+        b.cylinder(0.2 * r, 0, 0.25 * r, (-0.9 * r, -1.5 * r)),
         look="white metal",
     )
-    b.cut("case", b.cylinder(0.9 * r, (0, -1, 0), (0, 0.12 * r, 0)))
-    b.part("case", b.cylinder(0.05 * r, (0, 0.05 * r, 0), (0, 0.13 * r, 0)))
+    b.cut("case", b.cylinder(0.9 * r, 0, (-1, 0.12 * r), 0))
+    b.part("case", b.cylinder(0.05 * r, 0, (0.05 * r, 0.13 * r), 0))
     b.part(
         "needle",
-        b.cylinder(0.09 * r, (0, 0.02 * r, 0), (0, 0.1 * r, 0)),
+        b.cylinder(0.09 * r, 0, (0.02 * r, 0.1 * r), 0),
         beam(0.04 * r, 0.03 * r, (0, 0.06 * r, -0.25 * r), (0, 0.06 * r, 0.8 * r), Y),
         look="red steel",
     )
-    b.cut("needle", b.cylinder(0.06 * r, (0, -1, 0), (0, 1, 0)))
-    b.hinge("needle", "case", Y, (0, 0, 0), 2.3, lower=-2.3)
+    b.cut("needle", b.cylinder(0.06 * r, 0, (-1, 1), 0))
+    b.hinge("needle", "case", Y, (0, 0, 0), 2.3, -2.3)
 
 
 @kind(number=whole(2, 12, default=5, usual=(3, 8), words="leaf, blade"), length=(0.08, 0.12))
@@ -490,13 +473,13 @@ def hand_plane(b: ObjectBuilder, length: float) -> None:
         slab((0, length), 0.03, (0, 0.012)),
         [box((0.2 * length, s * 0.03, 0.01), (0.75 * length, s * 0.026, 0.04)) for s in (-1, 1)],
         beam(0.02, 0.035, (0.18 * length, 0, 0.01), (0.1 * length, 0, 0.1), Y),
-        b.cylinder(0.008, (0.85 * length, 0, 0.01), (0.85 * length, 0, 0.03)),
+        b.cylinder(0.008, 0.85 * length, 0, (0.01, 0.03)),
         ball(0.018, (0.85 * length, 0, 0.042)),
         beam(0.04, 0.012, (0.3 * length, 0, 0.06), (0.55 * length, 0, 0.015), X),
         look="black steel",
     )
     b.part("lever", beam(0.03, 0.008, (0.31 * length, 0, 0.075), (0.5 * length, 0, 0.042), X), look="brass")
-    b.hinge("lever", "body", Y, (0.5 * length, 0, 0.042), 0.9, lower=0)
+    b.hinge("lever", "body", Y, (0.5 * length, 0, 0.042), 0.9, 0)
 
 
 @kind(words="pillar crane, slewing crane, davit crane, davit", height=(1.8, 2.8))
@@ -512,7 +495,7 @@ def jib_crane(b: ObjectBuilder, height: float) -> None:
         beam(0.04, 0.04, (0.09, 0, 0.82 * height), (0.5 * reach, 0, height - 0.1), Y),
         look="yellow steel",
     )
-    b.hinge("jib", "column", Z, (0, 0, 0), 3.0, lower=-3.0)
+    b.hinge("jib", "column", Z, (0, 0, 0), 3.0, -3.0)
     b.part(
         "trolley",
         slab((0.6 * reach - 0.05, 0.6 * reach + 0.05), 0.05, (height - 0.2, height - 0.124)),
@@ -520,14 +503,14 @@ def jib_crane(b: ObjectBuilder, height: float) -> None:
             box((0.6 * reach - 0.05, s * 0.034, height - 0.13), (0.6 * reach + 0.05, s * 0.05, height - 0.06))
             for s in (-1, 1)
         ],
-        b.cylinder(0.008, (0.6 * reach, 0, height - 0.45), (0.6 * reach, 0, height - 0.19)),
+        b.cylinder(0.008, 0.6 * reach, 0, (height - 0.45, height - 0.19)),
         look="steel",
     )
-    b.cut("trolley", b.cylinder(0.008, (0.6 * reach, 0, 0), (0.6 * reach, 0, height - 0.198)))
+    b.cut("trolley", b.cylinder(0.008, 0.6 * reach, 0, (0, height - 0.198)))
     b.slide("trolley", "jib", X, 0.33 * reach, lower=-0.05 * reach)
     b.part(
         "hook",
-        b.cylinder(0.006, (0.6 * reach, 0, height - 0.5), (0.6 * reach, 0, height - 0.201)),
+        b.cylinder(0.006, 0.6 * reach, 0, (height - 0.5, height - 0.201)),
         b.torus(0.04, 0.01, (0.6 * reach, 0, height - 0.55), Y),
         look="black steel",
     )
@@ -540,14 +523,14 @@ def hose_nozzle(b: ObjectBuilder, size: float) -> None:
     b.part(
         "body",
         p.cylinder(0.014, (-0.1, 0, 0), (0.02, 0, 0.06)),
-        p.cylinder(0.014, (0, 0, 0.06), (0.06, 0, 0.06)),
+        p.cylinder(0.014, (0, 0.06), 0, 0.06),
         [p.box((-0.01, s * 0.014, 0.06), (0.015, s * 0.009, 0.085)) for s in (-1, 1)],
         look="green",
     )
-    b.part("head", p.cylinder(0.024, (0.061, 0, 0.06), (0.09, 0, 0.06)), look="black")
+    b.part("head", p.cylinder(0.024, (0.061, 0.09), 0, 0.06), look="black")
     b.spin("head", "body", X, p(0, 0, 0.06))
     b.part("lever", p.beam(0.012, 0.005, (0.006, 0, 0.081), (-0.1, 0, 0.055)), look="metal")
-    b.hinge("lever", "body", -Y, p(0.006, 0, 0.081), 0.2, lower=-0.1)
+    b.hinge("lever", "body", -Y, p(0.006, 0, 0.081), 0.2, -0.1)
 
 
 @kind(
@@ -579,10 +562,10 @@ def garden_cart(b: ObjectBuilder, length: float, width: float) -> None:
     b.part(
         "handle",
         beam(0.025, 0.025, (length / 2 + 0.03, 0, 0.23), (length / 2 + 0.45, 0, 0.75), Y),
-        b.cylinder(0.014, (length / 2 + 0.45, -0.1, 0.75), (length / 2 + 0.45, 0.1, 0.75)),
+        b.cylinder(0.014, length / 2 + 0.45, (-0.1, 0.1), 0.75),
         look="black steel",
     )
-    b.hinge("handle", "frame", Y, (length / 2 + 0.03, 0, 0.23), 0.7, lower=-0.2)
+    b.hinge("handle", "frame", Y, (length / 2 + 0.03, 0, 0.23), 0.7, -0.2)
 
 
 @kind(words="rotating drum, lottery drum, raffle drum", radius=(0.15, 0.32), length=(0.4, 0.8))
@@ -596,14 +579,14 @@ def compost_tumbler(b: ObjectBuilder, radius: float, length: float) -> None:
             for s in (-1, 1)
             for t in (-1, 1)
         ],
-        b.cylinder(0.014, (-l - 0.05, 0, z), (l + 0.05, 0, z)),
+        b.cylinder(0.014, (-l - 0.05, l + 0.05), 0, z),
         look="black steel",
     )
-    b.part("drum", b.cylinder(radius, (-l, 0, z), (l, 0, z)), look="dark green")
+    b.part("drum", b.cylinder(radius, (-l, l), 0, z), look="dark green")
     b.cut(
         "drum",
-        b.cylinder(radius - 0.008, (-l + 0.008, 0, z), (l - 0.008, 0, z)),
-        b.cylinder(0.017, (-1, 0, z), (1, 0, z)),
+        b.cylinder(radius - 0.008, (-l + 0.008, l - 0.008), 0, z),
+        b.cylinder(0.017, (-1, 1), 0, z),
         slab(0.4 * l, 0.4 * radius, (z, z + 2)),
     )
     b.spin("drum", "stand", X, (0, 0, z))
@@ -624,8 +607,8 @@ def rain_barrel(b: ObjectBuilder, radius: float, height: float) -> None:
         b.lathe(
             [(0, 0), (0.8 * r, 0), (r, 0.35 * height), (r, 0.65 * height), (0.8 * r, height), (0, height)], (0, 0, 0)
         ),
-        b.cylinder(0.02, (0, -0.85 * r, 0.15 * height), (0, -r - 0.07, 0.15 * height)),
-        b.cylinder(0.012, (0, -r - 0.06, 0.15 * height), (0, -r - 0.06, 0.15 * height - 0.05)),
+        b.cylinder(0.02, 0, (-0.85 * r, -r - 0.07), 0.15 * height),
+        b.cylinder(0.012, 0, -r - 0.06, (0.15 * height, 0.15 * height - 0.05)),
         look="brown wood",
     )
     b.cut(
@@ -709,17 +692,17 @@ def log_splitter(b: ObjectBuilder, length: float) -> None:
         "beam",
         slab((0, length), 0.08, (0.35, 0.45)),
         slab((length - 0.08, length - 0.02), 0.015, (0.44, 0.65)),
-        b.cylinder(0.06, (0, 0, 0.54), (0.35 * length, 0, 0.54)),
+        b.cylinder(0.06, (0, 0.35 * length), 0, 0.54),
         slab((0, 0.04), 0.05, (0.44, 0.6)),
         slab((0.3 * length, 0.33 * length), 0.05, (0.44, 0.5)),
         slab((length - 0.1, length - 0.04), 0.03, (0, 0.36)),
         slab((0.2 * length - 0.04, 0.2 * length + 0.04), 0.2, (0.18, 0.36)),
         look="red steel",
     )
-    b.bore("beam", b.cylinder(0.032, (0.05, 0, 0.54), (length * 0.5, 0, 0.54)))
+    b.bore("beam", b.cylinder(0.032, (0.05, length * 0.5), 0, 0.54))
     b.part(
         "ram",
-        b.cylinder(0.028, (0.08, 0, 0.54), (0.42 * length, 0, 0.54)),
+        b.cylinder(0.028, (0.08, 0.42 * length), 0, 0.54),
         slab((0.4 * length, 0.44 * length), 0.07, (0.452, 0.63)),
         look="steel",
     )
@@ -735,12 +718,12 @@ def garden_roller(b: ObjectBuilder, width: float, radius: float) -> None:
     b.part(
         "handle",
         [beam(0.02, 0.02, (s * (w + 0.025), 0, radius), (s * (w + 0.025), 0.5, 0.9), X) for s in (-1, 1)],
-        b.cylinder(0.014, (-w - 0.035, 0.5, 0.9), (w + 0.035, 0.5, 0.9)),
-        b.cylinder(0.012, (-w - 0.03, 0, radius), (w + 0.03, 0, radius)),
+        b.cylinder(0.014, (-w - 0.035, w + 0.035), 0.5, 0.9),
+        b.cylinder(0.012, (-w - 0.03, w + 0.03), 0, radius),
         look="green steel",
     )
-    b.part("drum", b.cylinder(radius, (-w, 0, radius), (w, 0, radius)), look="green")
-    b.cut("drum", b.cylinder(0.014, (-1, 0, radius), (1, 0, radius)))
+    b.part("drum", b.cylinder(radius, (-w, w), 0, radius), look="green")
+    b.cut("drum", b.cylinder(0.014, (-1, 1), 0, radius))
     b.spin("drum", "handle", X, (0, 0, radius))
 
 
@@ -751,18 +734,18 @@ def snow_blower(b: ObjectBuilder, size: float) -> None:
         "body",
         p.slab(0.3, (-0.5, -0.1), (0.05, 0.5)),
         p.slab(0.2, (-0.12, 0.35), (0.2, 0.55)),
-        p.cylinder(0.07, (0, -0.2, 0.49), (0, -0.2, 0.54)),
+        p.cylinder(0.07, 0, -0.2, (0.49, 0.54)),
         [p.rod(0.014, (s * 0.2, 0.25, 0.45), (s * 0.25, 0.8, 0.95)) for s in (-1, 1)],
-        p.rod(0.014, (-0.25, 0.8, 0.95), (0.25, 0.8, 0.95)),
-        [p.cylinder(0.02, (s * 0.19, 0.15, 0.2), (s * 0.235, 0.15, 0.2)) for s in (-1, 1)],
+        p.rod(0.014, (-0.25, 0.25), 0.8, 0.95),
+        [p.cylinder(0.02, (s * 0.19, s * 0.235), 0.15, 0.2) for s in (-1, 1)],
         p.slab(0.19, (0.1, 0.2), (0.15, 0.25)),
         look="red steel",
     )
     b.cut("body", p.slab(0.28, (-1, -0.14), (0.07, 0.45)))
-    b.bore("body", p.cylinder(0.022, (-1, -0.32, 0.26), (1, -0.32, 0.26)))
+    b.bore("body", p.cylinder(0.022, (-1, 1), -0.32, 0.26))
     b.part(
         "auger",
-        p.cylinder(0.018, (-0.32, -0.32, 0.26), (0.32, -0.32, 0.26)),
+        p.cylinder(0.018, (-0.32, 0.32), -0.32, 0.26),
         [
             p.beam(
                 0.03,
@@ -777,10 +760,10 @@ def snow_blower(b: ObjectBuilder, size: float) -> None:
     b.spin("auger", "body", X, p(0, -0.32, 0.26))
     b.part(
         "chute",
-        p.cylinder(0.07, (0, -0.2, 0.542), (0, -0.2, 0.6)),
+        p.cylinder(0.07, 0, -0.2, (0.542, 0.6)),
         p.beam(0.12, 0.02, (0, -0.24, 0.58), (0, -0.3, 0.85), Y),
         look="red steel",
     )
-    b.hinge("chute", "body", Z, p(0, -0.2, 0), 1.6, lower=-1.6)
+    b.hinge("chute", "body", Z, p(0, -0.2, 0), 1.6, -1.6)
     for k, s in enumerate((-1, 1)):
         wheel(b, f"wheel_{k}", "body", p(s * 0.29, 0.15, 0.2), 0.2 * size, 0.1 * size, s * X, axle=0.004 * size)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _Motion = tuple[float, float, float]
 """Lower and upper limit, and the value at which a joint is shown [rad or m]."""
-_LENGTHS = {"ball": 2, "lathe": 2, "cone": 4, "tube": 4, "beam": 4}
+_LENGTHS = {"ball": 2, "lathe": 2, "cylinder": 4, "rod": 4, "cone": 5, "tube": 5, "beam": 4}
 """How many arguments of a shape are points and lengths, 3 of others; the rest are directions."""
 _ROUND = (solids.cylinder, solids.cone, solids.tube, solids.torus, solids.rod, solids.lathe)
 

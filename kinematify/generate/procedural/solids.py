@@ -84,20 +84,26 @@ def beam(wide: float, high: float, start: Point, end: Point, side: Point = Z) ->
     return Manifold.cube((length, wide, high), True).transform(frame)
 
 
-def cylinder(radius: float, start: Level, end: Level, *, segments: int = SEGMENTS) -> Manifold:
-    """Return the cylinder whose circular faces are centred at `start` and `end`."""
-    return cone(radius, radius, start, end, segments=segments)
+def cylinder(radius: float, start: Level, end: Level, z: Span | None = None, *, segments: int = SEGMENTS) -> Manifold:
+    """Return the cylinder whose circular faces are centred at `start` and `end`; see `_ends`."""
+    return cone(radius, radius, start, end, z, segments=segments)
 
 
-def cone(radius: float, top_radius: float, start: Level, end: Level, *, segments: int = SEGMENTS) -> Manifold:
-    """Return the cone, or what is left of one without its tip, between two points."""
-    start, end = _point(start), _point(end)
+def cone(
+    radius: float, top_radius: float, start: Level, end: Level, z: Span | None = None, *, segments: int = SEGMENTS
+) -> Manifold:
+    """Return the cone, or what is left of one without its tip, between two points; see `_ends`."""
+    start, end = _ends(start, end, z)
     length = float(np.linalg.norm(np.subtract(end, start, dtype=np.float64)))
     return Manifold.cylinder(length, radius, top_radius, segments).transform(_upright(start, np.subtract(end, start)))
 
 
-def tube(radius: float, inner_radius: float, start: Level, end: Level, *, segments: int = SEGMENTS) -> Manifold:
-    """Return the cylinder with a bore between two points."""
+def tube(
+    radius: float, inner_radius: float, start: Level, end: Level, z: Span | None = None, *, segments: int = SEGMENTS
+) -> Manifold:
+    """Return the cylinder with a bore between two points; see `_ends`."""
+    if z is not None:
+        start, end = _ends(start, end, z)
     beyond = 0.5 * np.subtract(end, start)
     inner = cylinder(inner_radius, np.subtract(start, beyond), np.add(end, beyond), segments=segments)
     return cylinder(radius, start, end, segments=segments) - inner
@@ -108,9 +114,13 @@ def torus(radius: float, wire_radius: float, middle: Point, normal: Point, *, se
     return ring(radius, wire_radius, segments=segments).transform(_upright(middle, normal))
 
 
-def _point(level: Level) -> Point:
-    """A point, of a height that above the origin."""
-    return (0.0, 0.0, level) if isinstance(level, float | int) else level
+def _ends(start: Level, end: Level, z: Span | None) -> tuple[Point, Point]:
+    """Two points: as given, at two heights above the origin, or as x, y and z of which one is a pair of bounds."""
+    if z is not None:
+        one, other = np.transpose(np.broadcast_arrays(start, end, z))
+        return one, other
+    first, second = ((0.0, 0.0, level) if isinstance(level, float | int) else level for level in (start, end))
+    return first, second
 
 
 def _upright(origin: Point, towards: Point) -> FloatArray:
@@ -159,9 +169,9 @@ def strip(places: Sequence[Sequence[float]], low: float, high: float) -> list[Ma
     return [hull(one, other) for one, other in pairwise(discs)]
 
 
-def rod(radius: float, start: Level, end: Level, *, segments: int = 32) -> Manifold:
-    """Return a cylinder with round ends."""
-    start, end = _point(start), _point(end)
+def rod(radius: float, start: Level, end: Level, z: Span | None = None, *, segments: int = 32) -> Manifold:
+    """Return a cylinder with round ends; see `_ends`."""
+    start, end = _ends(start, end, z)
     ends = ball(radius, start, segments=segments) + ball(radius, end, segments=segments)
     return cylinder(radius, start, end, segments=segments) + ends
 
