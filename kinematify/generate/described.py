@@ -18,7 +18,7 @@ from kinematify.generate.procedural.blueprint_file import (
     Repetition,
     Vector,
 )
-from kinematify.generate.procedural.parameter import Parameter, details_of, parse_table
+from kinematify.generate.procedural.parameter import Parameter, details_of, parse_table, phrases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.parameter import Value
     from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
+
+
+_NO_LENGTHS = phrases("rpy, axis, mimic, count, revolute, sides, upright, counts, details, walls, unit")
+"""Fields of which nothing is a length."""
 
 
 class CopyDescription(BaseModel):
@@ -69,6 +73,9 @@ class CountParameters(BaseModel):
 
     walls: float | None = None
     """Of `Kind`."""
+
+    unit: int = 1
+    """How many of the file's lengths are a metre: 1000 where it is in millimetres."""
 
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
@@ -161,13 +168,23 @@ def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform:
     )
 
 
+def _in_metres(values: Any, unit: float) -> Any:
+    """Divide all that is a length."""
+    if isinstance(values, dict):
+        return {key: item if key in _NO_LENGTHS else _in_metres(item, unit) for key, item in values.items()}
+    if isinstance(values, list):
+        return [_in_metres(item, unit) for item in values]
+    return values if isinstance(values, str) else values / unit
+
+
 def kind_in(file: Path) -> Kind:
     """Return the kind of a file, of which all but its heading is only read once one is built."""
     text = file.read_text(encoding="utf-8")
 
     @cache
     def described() -> ObjectDescription:
-        return ObjectDescription.model_validate({"name": file.stem, "category": file.stem, **parse_table(text)})
+        table = _in_metres(parse_table(text), said.unit)
+        return ObjectDescription.model_validate({"name": file.stem, "category": file.stem, **table})
 
     said = CountParameters.model_validate({"category": file.stem, **parse_table(text.partition("\nparts:\n")[0])})
     material = re.search(r"\nparts:\n- name: .*\n  material: (\w+)", text)

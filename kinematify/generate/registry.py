@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
 from kinematify.generate.library.kind import KINDS, Kind, built
+from kinematify.generate.procedural.parameter import phrases
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,13 +18,13 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.parameter import Value
 
-FAMILIES = (
-    "cabinet", "serial_arm", "scara", "gantry", "gripper", "hand", "quadruped", "snake", "oven", "fridge", "table",
-    "microwave", "dishwasher", "washing_machine", "safe", "laptop", "box", "window", "door", "switch_panel",
-    "button_panel", "desk_lamp", "fan", "toaster", "coffee_machine", "trash_can", "toilet", "faucet", "office_chair",
-    "folding_chair", "scissors", "pliers", "hexapod", "humanoid", "stapler", "bottle", "bucket", "pen", "clock",
-    "excavator", "crane", "tracked_tree", "globe", "umbrella", "suitcase", "eyeglasses",
-)  # fmt: skip
+FAMILIES = phrases(
+    "cabinet, serial_arm, scara, gantry, gripper, hand, quadruped, snake, oven, fridge, table, microwave, "
+    "dishwasher, washing_machine, safe, laptop, box, window, door, switch_panel, button_panel, desk_lamp, fan, "
+    "toaster, coffee_machine, trash_can, toilet, faucet, office_chair, folding_chair, scissors, pliers, hexapod, "
+    "humanoid, stapler, bottle, bucket, pen, clock, excavator, crane, tracked_tree, globe, umbrella, suitcase, "
+    "eyeglasses"
+)
 """Names of the kinds that corpora draw, in this order."""
 _FOLDER = Path(__file__).with_name("kinds")
 

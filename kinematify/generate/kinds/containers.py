@@ -585,10 +585,9 @@ def cantilever_box(b: ObjectBuilder, width: float, trays: int) -> None:
                 for pin in (here, low):
                     b.part(arm, b.cylinder(0.003, pin + x, pin + t * (w - 0.004) * X))
             b.part(arm, b.cylinder(0.003, here + w * X, here - w * X))
-            y = sorted((s * 0.002, s * deep))
             level = z - high / 2, z + high / 2
-            room = slab(w - 0.005, (y[0] + 0.005, y[1] - 0.005), (level[0] + 0.005, 1))
-            b.part(tray, slab(w, y, level) - room, look="wood")
+            room = slab(w - 0.005, (s * 0.007, s * (deep - 0.005)), (level[0] + 0.005, 1))
+            b.part(tray, slab(w, (s * 0.002, s * deep), level) - room, look="wood")
             for pin, carries in ((here, tray), (low, parent)):
                 b.cut(carries, b.cylinder(0.0042, pin + X, pin - X))
             b.hinge(arm, parent, -s * X, low, opens)

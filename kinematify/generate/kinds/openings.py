@@ -122,7 +122,7 @@ def gate(b: ObjectBuilder, width: float, height: float, leaves: int, pickets: in
     # A bolt behind the rail of the last leaf: it reaches into the other post, or behind the other leaf.
     s, end, last = (1, w, "leaf_1") if leaves == 1 else (-1, 0, "leaf_2")
     here, level = end - s * 0.16, 0.75 * height + 0.04
-    spans = [sorted((x, x + s * 0.02)) for x in (here, here + s * 0.12)]
+    spans = [(x, x + s * 0.02) for x in (here, here + s * 0.12)]
     guides = [slab(span, (-0.055, -0.029), (level - 0.015, level + 0.015)) for span in spans]
     b.part(last, b.painted(*guides, material="steel"))
     b.part(

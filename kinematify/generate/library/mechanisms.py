@@ -179,11 +179,8 @@ def button(
         d.part(name, d.cylinder(0.5 * size[0], low, high_end), look=material)
     else:
         wide, tall = _across(out, size)
-        half = 0.5 * (wide + tall)
-        d.bore(
-            parent,
-            box(at - half - gap * _ones(out) - (deep + high) * out, at + half + gap * _ones(out) + 0.05 * high * out),
-        )
+        half, flat = 0.5 * (wide + tall), 1.0 - np.abs(out)
+        d.bore(parent, box(at - half - gap * flat - (deep + high) * out, at + half + gap * flat + 0.05 * high * out))
         d.part(name, box(low - half, high_end + half), look=material)
     d.slide(name, parent, -out, 0.7 * high, ajar=False)
 
@@ -469,7 +466,3 @@ def _across(out: FloatArray, size: tuple[float, float]) -> tuple[FloatArray, Flo
         return np.array([size[0], 0.0, 0.0]), np.array([0.0, size[1], 0.0])
     flat = np.array([abs(out[1]), abs(out[0]), 0.0])
     return size[0] * flat, np.array([0.0, 0.0, size[1]])
-
-
-def _ones(out: FloatArray) -> FloatArray:
-    return 1.0 - np.abs(out)

@@ -456,9 +456,7 @@ class JointDescription(_Described):
             lower=-free if self.lower is None else self.lower,
             upper=free if self.upper is None else self.upper,
             value=self.value,
-            mimic=None
-            if self.mimic is None
-            else Mimic(joint=self.mimic.leader, multiplier=self.mimic.multiplier, offset=0.0),
+            mimic=Mimic(joint=self.mimic.leader, multiplier=self.mimic.multiplier, offset=0.0) if self.mimic else None,
         )
 
 

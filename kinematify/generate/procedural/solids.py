@@ -102,8 +102,7 @@ def tube(
     radius: float, inner_radius: float, start: Level, end: Level, z: Span | None = None, *, segments: int = SEGMENTS
 ) -> Manifold:
     """Return the cylinder with a bore between two points; see `_ends`."""
-    if z is not None:
-        start, end = _ends(start, end, z)
+    start, end = _ends(start, end, z)
     beyond = 0.5 * np.subtract(end, start)
     inner = cylinder(inner_radius, np.subtract(start, beyond), np.add(end, beyond), segments=segments)
     return cylinder(radius, start, end, segments=segments) - inner
