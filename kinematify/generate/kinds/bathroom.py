@@ -20,7 +20,7 @@ from kinematify.generate.procedural.workshop import Workshop
     material="ceramic",
     width=length(0.3, 0.6, default=0.4, usual=(0.35, 0.45), help="Outer width."),
     depth=length(0.55, 0.9, default=0.68, usual=(0.6, 0.75), help="Outer depth."),
-    height=length(0.25, 0.55, default=0.4, usual=(0.36, 0.45), help="Of the bowl's rim."),
+    height=length(0.25, 0.55, usual=(0.36, 0.45), help="Of the bowl's rim."),
     flush=choice({"lever": "flush lever", "button": "flush button, push button"}, help="What it is flushed by."),
 )
 def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, open: float, clearance: float) -> None:
@@ -124,7 +124,7 @@ def toilet(w: Workshop, width: float, depth: float, height: float, flush: str, o
     material="steel",
     height=length(0.18, 0.6, default=0.24, usual=(0.2, 0.36), help="Of spout or post."),
     reach=length(0.12, 0.35, default=0.16, usual=(0.14, 0.22), help="Of the spout, forward."),
-    pipe=length(0.008, 0.016, default=0.012, usual=(0.01, 0.014), help="Radius of the pipe."),
+    pipe=length(0.008, 0.016, usual=(0.01, 0.014), help="Radius of the pipe."),
     handles=whole(1, 2, default=2, help="Of one with handles that twist."),
     handle=choice(
         {

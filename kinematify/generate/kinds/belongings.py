@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     depth=length(0.15, 0.4, default=0.24, usual=(0.2, 0.28), help="Outer depth."),
     base=length(0.008, 0.04, default=0.014, usual=(0.01, 0.024), help="Thickness below."),
     screen=length(0.005, 0.02, default=0.007, usual=(0.005, 0.01), help="Thickness above."),
-    knuckles=whole(2, 5, default=3, usual=(3, 5), help="Of each of the two hinges."),
+    knuckles=whole(2, 5, usual=(3, 5), help="Of each of the two hinges."),
 )
 def laptop(
     w: Workshop, width: float, depth: float, base: float, screen: float, knuckles: int, open: float, clearance: float
@@ -62,7 +62,6 @@ def laptop(
 
 @kind(
     words="world globe, earth globe, desk globe, terrestrial globe",
-    material="plastic",
     part_words={"base": "stand"},
     diameter=length(0.1, 0.8, default=0.25, usual=(0.16, 0.36), help="Of the ball."),
     post=length(0.03, 0.4, default=0.05, usual=(0.03, 0.12), help="Its height."),
@@ -137,7 +136,7 @@ def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, fo
     material="metal",
     height=length(0.5, 1.5, default=0.85, usual=(0.7, 1.0), help="Over all."),
     reach=length(0.2, 1.0, default=0.55, usual=(0.4, 0.65), help="Of a slat."),
-    ribs=whole(4, 12, default=8, usual=(6, 10), help="Around the shaft.", words="rib, slat"),
+    ribs=whole(4, 12, usual=(6, 10), help="Around the shaft.", words="rib, slat"),
     handle=choice({"crook": "crooked, hooked, curved", "straight": ""}, help="The part under it."),
 )
 def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, open: float, clearance: float) -> None:
@@ -215,9 +214,8 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
         "reading glasses, safety glasses, 3d glasses"
     ),
     title="pair of eyeglasses",
-    material="plastic",
     width=length(0.11, 0.17, default=0.138, usual=(0.125, 0.15), help="Of the frame."),
-    lens=length(0.025, 0.055, default=0.04, usual=(0.03, 0.048), help="Its height."),
+    lens=length(0.025, 0.055, usual=(0.03, 0.048), help="Its height."),
     bridge=length(0.014, 0.024, default=0.018, usual=(0.015, 0.022), help="Its width."),
     temple=length(0.09, 0.16, default=0.135, usual=(0.125, 0.148), help="Length of a temple."),
     shape=choice({"rectangular": "square", "round": "circular"}, help="Of the lenses.", words="lens, frame"),

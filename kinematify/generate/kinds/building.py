@@ -173,7 +173,7 @@ def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int,
     material="wood",
     width=length(0.7, 5.0, default=0.95, usual=(0.8, 1.4), help="Outer width."),
     height=length(1.6, 4.0, default=2.05, usual=(1.9, 2.3), help="Outer height."),
-    thick=length(0.02, 0.06, default=0.04, usual=(0.03, 0.05), help="Of a leaf.", words="thick, thickness"),
+    thick=length(0.02, 0.06, usual=(0.03, 0.05), help="Of a leaf.", words="thick, thickness"),
     frame=length(0.03, 0.08, default=0.05, usual=(0.04, 0.07), help="Its bars' width."),
     kind=choice(
         {
@@ -503,7 +503,6 @@ def window(
         "light switch, wall switch, switch plate, switch, dimmer switch, toggle switch, rocker switch, double "
         "switch plate, lamp switch, light switch panel"
     ),
-    material="plastic",
     rockers=whole(
         1, 6, default=1, usual=(1, 4), help="Switches side by side.", words="rocker, switch, gang, rocker switch"
     ),
@@ -577,17 +576,16 @@ def switch_panel(
 
 @kind(
     words=(
-        "keypad, control panel, push button panel, number pad, elevator panel, key pad, remote control, calculator, "
-        "numeric pad, lift panel, elevator button panel, call panel, control unit, alarm panel, remote, tv remote, "
-        "garage door opener, pocket calculator, mp3 player, numpad, numeric keypad, key fob, launchpad, card terminal, "
-        "pos terminal, payment terminal, tv controller, universal remote, graphing calculator"
+        "keypad, control panel, push button panel, number pad, elevator panel, remote control, calculator, numeric "
+        "pad, lift panel, elevator button panel, call panel, control unit, alarm panel, remote, tv remote, garage door "
+        "opener, pocket calculator, mp3 player, numpad, numeric keypad, key fob, launchpad, card terminal, pos "
+        "terminal, payment terminal, tv controller, universal remote, graphing calculator"
     ),
-    material="plastic",
     width=length(0.06, 0.6, default=0.12, usual=(0.08, 0.25), help="Outer width."),
     height=length(0.08, 0.8, default=0.18, usual=(0.12, 0.3), help="Outer height."),
     depth=length(0.02, 0.2, default=0.03, usual=(0.02, 0.06), help="Of the housing."),
-    buttons=whole(1, 24, default=12, usual=(2, 16), help="In rows, from the top left.", words="key, push button"),
-    columns=whole(1, 6, default=3, usual=(1, 4), help="Of buttons.", words="column"),
+    buttons=whole(1, 24, usual=(2, 16), help="In rows, from the top left.", words="key, push button"),
+    columns=whole(1, 6, usual=(1, 4), help="Of buttons.", words="column"),
     knobs=whole(0, 4, default=0, usual=(0, 3), help="Above the buttons.", words="dial"),
     shape=choice({"square": "rectangular", "round": "circular"}, help="Of the buttons."),
     display=choice({"none": "", "display": "screen"}, help="A recess for a screen."),

@@ -34,8 +34,8 @@ from kinematify.generate.procedural.workshop import Workshop
 
 @kind(
     words=(
-        "chest box, treasure chest, toolbox, tool box, jewelry box, jewellery box, crate, case, container, casket, "
-        "trunk, lunch box, pencil box, storage box, sewing kit box, money box"
+        "chest box, treasure chest, toolbox, jewelry box, crate, case, container, casket, trunk, pencil box, storage "
+        "box, sewing kit box, money box"
     ),
     usual={
         "storage bench, hope chest, blanket chest, toy box, toy chest": {"width": 1.1, "depth": 0.45, "height": 0.5},
@@ -153,7 +153,6 @@ def box_(
         "vinegar bottle, vial, soda bottle, juice bottle"
     ),
     title="bottle with a cap",
-    material="plastic",
     width=length(0.04, 0.3, default=0.075, usual=(0.055, 0.1), help="Outer diameter.", words="diameter"),
     height=length(0.1, 0.6, default=0.24, usual=(0.16, 0.32), help="Without the cap."),
     neck=length(0.024, 0.08, default=0.03, usual=(0.026, 0.04), help="Its diameter."),
@@ -249,7 +248,6 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         "pail, water bucket, paint bucket, cleaning bucket, sand bucket, feed bucket, milk pail, beach bucket, toy "
         "bucket, slop bucket"
     ),
-    material="plastic",
     width=length(
         0.12,
         0.8,
@@ -325,10 +323,9 @@ def bucket(
 
 @kind(
     words=(
-        "garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, trashcan, pedal bin, kitchen bin, "
-        "recycling can, step bin, office bin, litter bin, bathroom bin"
+        "garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, pedal bin, kitchen bin, recycling "
+        "can, step bin, office bin, litter bin, bathroom bin"
     ),
-    material="plastic",
     width=length(0.18, 0.8, default=0.28, usual=(0.2, 0.42), help="Outer width or diameter.", words="diameter"),
     height=length(0.2, 1.2, default=0.4, usual=(0.28, 0.7), help="Without the lid."),
     lid=choice(
@@ -434,7 +431,6 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         "trolley case, luggage, travel case, roller suitcase, carry on, carry on suitcase, cabin bag, rolling "
         "suitcase, wheeled suitcase, hand luggage, travel suitcase, travel trolley"
     ),
-    material="plastic",
     width=length(0.3, 0.7, default=0.4, usual=(0.34, 0.5), help="Of the shells."),
     depth=length(0.18, 0.45, default=0.24, usual=(0.2, 0.3), help="Of both shells."),
     height=length(0.4, 1.0, default=0.62, usual=(0.52, 0.75), help="With the wheels, the handle pushed in."),
@@ -552,12 +548,12 @@ def suitcase(
 
 @kind(
     "cantilever toolbox",
-    words="cantilever tool box, cantilever box, sewing box, cantilever sewing box, concertina toolbox",
+    words="sewing box, cantilever sewing box, concertina toolbox",
     material="wood",
     part_words={"arm": "link, strut"},
     details={"handle": 1},
     width=(0.3, 0.6),
-    trays=whole(1, 3, default=2, words="compartment, tier", help="On each side."),
+    trays=whole(1, 3, words="compartment, tier", help="On each side."),
     styles=False,
 )
 def cantilever_box(b: ObjectBuilder, width: float, trays: int) -> None:

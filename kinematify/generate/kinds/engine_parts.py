@@ -45,7 +45,7 @@ def disc_brake(b: ObjectBuilder, radius: float) -> None:
 
 
 @kind(
-    words="cam shaft, valve train, cam shaft with followers",
+    words="valve train, cam shaft with followers",
     part_words={"shaft": "cam", "follower": "valve, tappet, pushrod, lifter"},
     followers=whole(1, 6),
 )

@@ -61,9 +61,9 @@ def standing_desk(b: ObjectBuilder, width: float, depth: float, height: float) -
 
 @kind(
     words=(
-        "swivel stool, bar stool, screw stool, music stool, stool, barstool, swivel bar stool, counter stool, pub "
-        "stool, work stool, drafting stool, lab stool, vanity stool, kitchen stool, drum stool, drum throne, rotating "
-        "stool, artist stool, massage stool, doctor stool, dentist stool, shop stool, revolving stool, spinning stool, "
+        "swivel stool, bar stool, screw stool, music stool, stool, swivel bar stool, counter stool, pub stool, work "
+        "stool, drafting stool, lab stool, vanity stool, kitchen stool, drum stool, drum throne, rotating stool, "
+        "artist stool, massage stool, doctor stool, dentist stool, shop stool, revolving stool, spinning stool, "
         "cobbler stool"
     ),
     radius=(0.15, 0.22),
@@ -186,7 +186,7 @@ def roller_shutter_cabinet(b: ObjectBuilder, width: float, height: float) -> Non
     part_words={"drawer": "bed box, box"},
     width=(0.8, 1.0),
     height=(1.5, 1.8),
-    number=whole(1, 3, default=2, words="drawer, bed box, storage box"),
+    number=whole(1, 3, words="drawer, bed box, storage box"),
 )
 def bunk_bed(b: ObjectBuilder, width: float, height: float, number: int) -> None:
     """Two beds above each other, a ladder, drawers below."""

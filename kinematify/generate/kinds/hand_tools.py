@@ -11,7 +11,6 @@ from kinematify.generate.procedural.solids import X, Y, Z, beam, slab
 
 
 @kind(
-    words="jig saw",
     part_words={"base_plate": "base, shoe, sole, plate, sole plate", "trigger": "switch"},
     size=(0.9, 1.2),
 )
@@ -110,7 +109,7 @@ def glue_gun(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words="fret saw, fretsaw, scrollsaw, fretsaw machine",
+    words="fret saw, fretsaw machine",
     part_words={"knob": "speed knob, dial", "arm": "upper arm"},
     size=(0.9, 1.2),
 )
@@ -161,7 +160,7 @@ def paint_roller(b: ObjectBuilder, width: float) -> None:
 
 @kind(
     "screwdriver",
-    words="ratchet screwdriver, ratcheting screwdriver",
+    words="ratcheting screwdriver",
     title="ratchet screwdriver",
     part_words={"shaft": "bit, blade, tip, shank"},
     details={"handle": 1},

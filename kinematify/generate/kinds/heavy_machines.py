@@ -142,7 +142,7 @@ def excavator(
     ),
     height=length(1.5, 20.0, default=3.0, usual=(2.0, 5.0), help="Of a tower; sets the scale."),
     jib=length(1.0, 20.0, default=2.4, usual=(1.6, 3.0), help="Its length; of a boom drawn out.", words="jib, boom"),
-    sections=whole(0, 4, default=2, usual=(0, 3), help="That a boom lengthens by.", words="section"),
+    sections=whole(0, 4, usual=(0, 3), help="That a boom lengthens by.", words="section"),
     wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
 )
 def crane(
@@ -293,8 +293,8 @@ def crane(
     ),
     title="tree of links on tracks",
     material="metal",
-    branches=whole(1, 8, default=4, usual=(2, 6), help="Around the trunk.", words="branch, limb"),
-    links=whole(1, 3, default=2, help="Of a branch.", words="link, joint, joint per branch"),
+    branches=whole(1, 8, usual=(2, 6), help="Around the trunk.", words="branch, limb"),
+    links=whole(1, 3, help="Of a branch.", words="link, joint, joint per branch"),
     wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
     length=length(0.4, 3.0, default=0.8, usual=(0.6, 1.2), help="Of the tracks."),
     width=length(0.4, 2.0, default=0.6, usual=(0.4, 0.9), help="Over the tracks."),

@@ -11,7 +11,7 @@ from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, slab
 
 
-@kind("door handle", words="lever handle, door lever, door fitting, lock fitting", size=(0.9, 1.1))
+@kind("door handle", words="door lever, door fitting, lock fitting", size=(0.9, 1.1))
 def lever_handle(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part("plate", p.slab(0.022, (0, 0.008), 0.12), look="brass")
@@ -99,7 +99,7 @@ def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
             b.follow(f"louver_{k}", "louver_0", 1)
 
 
-@kind("cat litter box", walls=4, words="litter box", width=(0.35, 0.55))
+@kind("cat litter box", walls=4, width=(0.35, 0.55))
 def litter_box(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part("box", slab(w, 0.25, (0, 0.4)), look="grey")
@@ -154,7 +154,7 @@ def coat_rack(b: ObjectBuilder, number: int) -> None:
     words="tilting shoe cabinet, tilt out cabinet, laundry cabinet, tilt out bin",
     rows=whole(1, 4, words="flap, compartment"),
     width=(0.5, 0.9),
-    drawers=whole(0, 1, default=0, words="drawer"),
+    drawers=whole(0, 1, words="drawer"),
 )
 def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> None:
     w = width / 2
@@ -170,15 +170,7 @@ def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> Non
     )
     if drawers:
         b.part("cabinet", slab(w, (0, 0.2), (h - 0.009, h + 0.009)))
-        drawer(
-            b,
-            "drawer",
-            "cabinet",
-            (-w + 0.018, -0.018, h + 0.012),
-            (w - 0.018, 0.18, top - 0.003),
-            out=-Y,
-            material="wood",
-        )
+        drawer(b, "drawer", "cabinet", (-w + 0.018, -0.018, h + 0.012), (w - 0.018, 0.18, top - 0.003), material="wood")
     for k, z in enumerate(spread(rows, 0.07, h - 0.01)):
         half = (h - 0.08) / rows / 2
         b.part(
@@ -223,7 +215,7 @@ def extension_table(b: ObjectBuilder, width: float, depth: float) -> None:
 
 @kind(
     "coffee table with drawer",
-    words="lift top coffee table, coffee table, lift top table",
+    words="lift top coffee table, coffee table",
     width=(0.8, 1.2),
     depth=(0.5, 0.7),
 )
@@ -233,7 +225,7 @@ def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
     b.part("body", slab(w, t, (0.12, 0.42)), look="wood")
     legs(b, "body", (-w, -t, 0), (w, t, 0.125), 0.06)
     b.cut("body", slab(w - 0.02, t - 0.02, (0.28, 1)))
-    drawer(b, "drawer", "body", (-0.4 * width, -t, 0.14), (0.4 * width, 0.6 * t, 0.25), out=-Y)
+    drawer(b, "drawer", "body", (-0.4 * width, -t, 0.14), (0.4 * width, 0.6 * t, 0.25))
     b.part(
         "top",
         slab(w, t, (0.421, 0.445)),
@@ -308,7 +300,6 @@ def atm(b: ObjectBuilder, width: float) -> None:
         (-0.36 * width, -0.32, 0.08),
         (0.36 * width, -0.301, 0.67),
         hinge=X,
-        out=-Y,
         reach=1.8,
         material="steel",
     )
@@ -418,7 +409,7 @@ def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
     b.spin("head", "post", Z, (0, 0, 0))
 
 
-@kind(words="bird cage, parrot cage, budgie cage", width=(0.3, 0.6), height=(0.45, 0.9))
+@kind(words="parrot cage, budgie cage", width=(0.3, 0.6), height=(0.45, 0.9))
 def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
     """Bars on a tray under a roof, a door in front, a swing inside."""
     w = width / 2
@@ -448,7 +439,7 @@ def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
         [slab(w, (y - 0.01, y + 0.01), (top - 0.01, top + 0.001)) for y in [0]],
         look="steel",
     )
-    leaf(b, "door", "cage", (-half, -w - 0.008, low), (half, -w, high), hinge=-X, out=-Y, reach=2.0)
+    leaf(b, "door", "cage", (-half, -w - 0.008, low), (half, -w, high), hinge=-X, reach=2.0)
     z = top - 0.02
     arm = 0.35 * w
     b.part(

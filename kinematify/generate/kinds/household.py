@@ -11,8 +11,8 @@ from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, bo
 
 @kind(
     words=(
-        "pot, cooking pot, stockpot, stew pot, casserole, dutch oven, stock pot, soup pot, pasta pot, bean pot, soup "
-        "tureen, soup kettle, rice pot"
+        "pot, cooking pot, stockpot, stew pot, casserole, dutch oven, soup pot, pasta pot, bean pot, soup tureen, soup "
+        "kettle, rice pot"
     ),
     radius=(0.08, 0.18),
     height=(0.06, 0.2),
@@ -142,7 +142,7 @@ def shower_mixer(b: ObjectBuilder, width: float, radius: float) -> None:
 @kind(
     words="swing arm towel rail, swivel towel bar",
     height=(0.2, 0.6),
-    number=whole(1, 6, default=3, usual=(2, 4), words="arm, bar, rail"),
+    number=whole(1, 6, usual=(2, 4), words="arm, bar, rail"),
 )
 def towel_rail(b: ObjectBuilder, height: float, number: int) -> None:
     """Arms that swing about an upright on a wall."""
@@ -212,7 +212,7 @@ def bread_bin(b: ObjectBuilder, width: float, radius: float) -> None:
     words="knife holder, knife stand",
     width=(0.1, 0.2),
     height=(0.2, 0.28),
-    number=whole(1, 8, default=4, usual=(3, 6), words="knife"),
+    number=whole(1, 8, usual=(3, 6), words="knife"),
 )
 def knife_block(b: ObjectBuilder, width: float, height: float, number: int) -> None:
     """Knives that are drawn out of a slanted block."""
@@ -330,17 +330,10 @@ def wood_stove(b: ObjectBuilder, width: float, height: float) -> None:
         (-0.4 * width, -0.225, 0.32 * height),
         (0.4 * width, -0.2, 0.88 * height),
         hinge=b.pick(X, -X),
-        out=-Y,
         reach=2.0,
         material="steel",
     )
     drawer(
-        b,
-        "ash_drawer",
-        "stove",
-        (-0.3 * width, -0.2, 0.13),
-        (0.3 * width, 0.1, 0.13 + 0.12 * height),
-        out=-Y,
-        material="steel",
+        b, "ash_drawer", "stove", (-0.3 * width, -0.2, 0.13), (0.3 * width, 0.1, 0.13 + 0.12 * height), material="steel"
     )
     knob(b, "damper", "stove", (0.0715, 0.05, height + 0.2), 0.018, X, high=0.03, reach=1.57)

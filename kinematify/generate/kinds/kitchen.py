@@ -157,7 +157,7 @@ def apple_peeler(b: ObjectBuilder, size: float) -> None:
     b.hinge("arm", "base", Z, p(-0.1, 0.02, 0.02), 0.8, 0)
 
 
-@kind(words="tea pot, coffee pot", radius=(0.06, 0.1))
+@kind(words="coffee pot", radius=(0.06, 0.1))
 def teapot(b: ObjectBuilder, radius: float) -> None:
     r = radius
     p = b.sized(r)
@@ -218,7 +218,7 @@ def egg_slicer(b: ObjectBuilder, size: float) -> None:
     b.hinge("frame", "base", -X, p(0, 0.075, 0.025), 1.6)
 
 
-@kind(words="spice carousel, revolving spice rack", number=whole(3, 9, default=6, usual=(4, 8), words="jar"))
+@kind(words="spice carousel, revolving spice rack", number=whole(3, 9, usual=(4, 8), words="jar"))
 def spice_rack(b: ObjectBuilder, number: int) -> None:
     b.part("base", b.cylinder(0.08, 0, 0.02), b.cylinder(0.008, 0.01, 0.3), look="wood")
     b.part("rack", [b.cylinder(0.1, z, z + 0.012) for z in (0.03, 0.16)], b.tube(0.014, 0.01, 0.03, 0.28), look="wood")
@@ -273,7 +273,7 @@ def popcorn_machine(b: ObjectBuilder, width: float) -> None:
         [slab((x * 0.14 - 0.01, x * 0.14 + 0.01), 0.01, (0.55, 0.76)) for x in (-1, 1)],
         look="red steel",
     )
-    leaf(b, "door", "case", (-w, -w - 0.008, 0.1), (w, -w, 0.75), hinge=-X, out=-Y, reach=1.8, material="glass")
+    leaf(b, "door", "case", (-w, -w - 0.008, 0.1), (w, -w, 0.75), hinge=-X, reach=1.8, material="glass")
     b.part(
         "kettle",
         b.cylinder(0.1, 0.45, 0.6),
@@ -577,7 +577,7 @@ def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float
     if door:
         b.cut("tub", slab((0.2, 0.7), 0.1, (0.15, 1)))
         face = (0.203, 0.0, 0.155), (0.697, 0.05, height)
-        leaf(b, "door", "tub", *face, hinge=-X, out=-Y, reach=1.6, material="plastic")
+        leaf(b, "door", "tub", *face, hinge=-X, material="plastic")
     b.part(
         "tub",
         b.cylinder(0.02, length - 0.03, width / 2, (height, height + 0.12)),
@@ -589,7 +589,7 @@ def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float
         )
 
 
-@kind(words="sink, wash basin, kitchen sink, bathroom sink, hand basin", width=(0.45, 0.8), depth=(0.38, 0.5))
+@kind(words="sink, kitchen sink, bathroom sink, hand basin", width=(0.45, 0.8), depth=(0.38, 0.5))
 def washbasin(b: ObjectBuilder, width: float, depth: float) -> None:
     b.part("basin", slab(width / 2, depth / 2, (0.75, 0.9)), b.cylinder(0.08, 0, 0.05, (0, 0.76)), look="white ceramic")
     b.cut("basin", slab(0.42 * width, (-0.42 * depth, 0.25 * depth), (0.78, 1)))
@@ -641,15 +641,7 @@ def laundry_basket(b: ObjectBuilder, width: float, height: float) -> None:
         [slab(0.4 * width, 0.3, (z - 0.012, z + 0.012)) for z in spread(6, 0.05, height - 0.05)],
     )
     leaf(
-        b,
-        "lid",
-        "basket",
-        (-width / 2, -0.17, height),
-        (width / 2, 0.17, height + 0.014),
-        hinge=Y,
-        out=Z,
-        reach=1.6,
-        handle=False,
+        b, "lid", "basket", (-width / 2, -0.17, height), (width / 2, 0.17, height + 0.014), hinge=Y, out=Z, handle=False
     )
 
 

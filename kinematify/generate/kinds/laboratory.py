@@ -59,7 +59,6 @@ def fume_hood(b: ObjectBuilder, width: float, height: float) -> None:
             (0, -0.02, 0.08),
             (s * (w - 0.01), 0, 0.84),
             hinge=s * X,
-            out=-Y,
             reach=1.8,
             material="steel",
         )
@@ -81,7 +80,6 @@ def incubator(b: ObjectBuilder, width: float, height: float, number: int) -> Non
         (-width / 2, -0.06, 0.05),
         (width / 2, -0.001, height),
         hinge=-X,
-        out=-Y,
         reach=1.8,
         material="steel",
     )
@@ -211,7 +209,7 @@ def retort_stand(b: ObjectBuilder, height: float) -> None:
     b.slide("clamp", "base", Z, 0.3 * height, lower=-0.4 * height)
 
 
-@kind(words="glovebox, sandblasting cabinet, isolator", width=(0.6, 1.1))
+@kind(words="sandblasting cabinet, isolator", width=(0.6, 1.1))
 def glove_box(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
@@ -278,9 +276,7 @@ def pcr_machine(b: ObjectBuilder, width: float) -> None:
         handle=False,
         material="plastic",
     )
-    drawer(
-        b, "drawer", "body", (-0.5 * w, -0.16, 0.02), (0.5 * w, 0.05, 0.08), out=-Y, handle=False, material="plastic"
-    )
+    drawer(b, "drawer", "body", (-0.5 * w, -0.16, 0.02), (0.5 * w, 0.05, 0.08), handle=False, material="plastic")
 
 
 @kind(
@@ -428,9 +424,7 @@ def crutch(b: ObjectBuilder, height: float) -> None:
     b.slide("tube", "shaft", -Z, 0.25 * height, lower=-0.1 * height)
 
 
-@kind(
-    words="pill organizer, weekly pill box", number=whole(1, 14, default=7, usual=(4, 8), words="lid, compartment, day")
-)
+@kind(words="pill organizer, weekly pill box", number=whole(1, 14, usual=(4, 8), words="lid, compartment, day"))
 def pill_box(b: ObjectBuilder, number: int) -> None:
     w = 0.03 * number / 2
     b.part("box", slab(w, 0.02, (0, 0.022)), look="blue")
@@ -486,7 +480,7 @@ def ct_scanner(b: ObjectBuilder, size: float) -> None:
     b.slide("table", "gantry", Y, 0.15)
 
 
-@kind(walls=45, words="x ray machine, x-ray machine, mobile x ray", size=(0.9, 1.1))
+@kind(walls=45, words="x ray machine, mobile x ray", size=(0.9, 1.1))
 def c_arm(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -532,18 +526,7 @@ def infant_incubator(b: ObjectBuilder, width: float) -> None:
         look="white",
     )
     b.cut("base", slab(w - 0.02, 0.23, (0.02, 0.66)))
-    leaf(
-        b,
-        "door",
-        "base",
-        (-w, -0.258, 0.7),
-        (w, -0.251, 1.1),
-        hinge=-Z,
-        out=-Y,
-        reach=1.5,
-        handle=False,
-        material="glass",
-    )
+    leaf(b, "door", "base", (-w, -0.258, 0.7), (w, -0.251, 1.1), hinge=-Z, reach=1.5, handle=False, material="glass")
     leaf(
         b, "hood", "base", (-w, -0.25, 1.1), (w, 0.25, 1.11), hinge=Y, out=Z, reach=1.4, handle=False, material="glass"
     )

@@ -30,7 +30,7 @@ from kinematify.generate.procedural.workshop import Workshop
     width=length(0.35, 1.2, default=0.6, usual=(0.5, 0.9), help="Outer width."),
     height=length(0.45, 1.2, default=0.85, usual=(0.6, 0.95), help="Outer height."),
     depth=length(0.35, 0.9, default=0.6, usual=(0.5, 0.65), help="Outer depth of the body."),
-    knobs=whole(0, 8, default=4, usual=(2, 6), help="Knobs above the door.", words="dial"),
+    knobs=whole(0, 8, usual=(2, 6), help="Knobs above the door.", words="dial"),
     top=choice({"burners": "cooktop, hob", "plain": "built in"}, help="A cooktop, or a plain top."),
     burners=whole(4, 4, words="burner", drawn=False, help="Rings on the cooktop."),
     handle=choice(("bar", "edge", "cup"), help="What the door is pulled by."),
@@ -108,11 +108,10 @@ def oven(
 @kind(
     words="microwave oven",
     title="microwave oven",
-    material="plastic",
     width=length(0.4, 0.8, default=0.5, usual=(0.42, 0.6), help="Outer width."),
     height=length(0.22, 0.5, default=0.28, usual=(0.25, 0.35), help="Outer height."),
     depth=length(0.25, 0.6, default=0.36, usual=(0.3, 0.45), help="Outer depth."),
-    buttons=whole(0, 12, default=6, usual=(1, 12), help="On the panel.", words="key"),
+    buttons=whole(0, 12, usual=(1, 12), help="On the panel.", words="key"),
     knobs=whole(0, 2, default=0, help="Above the buttons.", words="dial"),
     handle=choice(("bar", "edge", "none"), help="What the door is pulled by."),
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
@@ -178,18 +177,14 @@ def microwave(
 
 
 @kind(
-    words="dish washer, dish washing machine",
+    words="dish washing machine",
     material="metal",
     width=length(0.4, 1.0, default=0.6, usual=(0.45, 0.62), help="Outer width."),
     height=length(0.6, 1.1, default=0.82, usual=(0.7, 0.88), help="Outer height."),
     depth=length(0.4, 0.8, default=0.58, usual=(0.5, 0.62), help="Outer depth of the body."),
-    racks=whole(1, 3, default=2, help="Racks inside.", words="basket, dish rack"),
+    racks=whole(1, 3, help="Racks inside.", words="basket, dish rack"),
     reach=share(
-        0.1,
-        0.5,
-        default=0.3,
-        usual=(0.2, 0.4),
-        help="Way of the racks behind the closed door, as a share of the room's depth.",
+        0.1, 0.5, usual=(0.2, 0.4), help="Way of the racks behind the closed door, as a share of the room's depth."
     ),
     buttons=whole(0, 6, default=0, usual=(0, 5), help="Above the handle.", words="key"),
     handle=choice(("bar", "cup", "edge"), help="What the door is pulled by."),
@@ -278,7 +273,7 @@ def dishwasher(
     width=length(0.4, 1.5, default=0.6, usual=(0.55, 0.9), help="Outer width."),
     height=length(0.5, 2.4, default=1.7, usual=(1.3, 2.0), help="Outer height."),
     depth=length(0.35, 1.0, default=0.6, usual=(0.5, 0.7), help="Outer depth of the body."),
-    doors=whole(1, 4, default=2, help="Doors."),
+    doors=whole(1, 4, help="Doors."),
     drawers=whole(0, 3, default=0, drawn=False, help="Freezer drawers, below doors that are side by side."),
     freezer=choice(
         {
@@ -488,7 +483,7 @@ def washing_machine(
 
 
 @kind(
-    words=("strongbox, strong box, safe box, money safe, bank safe, office safe, home safe, hotel room safe"),
+    words=("strongbox, safe box, money safe, bank safe, office safe, home safe, hotel room safe"),
     usual={"gun safe, wall safe, hotel safe": {"width": 0.4, "depth": 0.4, "height": 0.5}},
     material="steel",
     width=length(0.2, 1.2, default=0.35, usual=(0.28, 0.6), help="Outer width."),

@@ -234,13 +234,7 @@ def printer(b: ObjectBuilder, width: float, depth: float, height: float) -> None
         handle=False,
     )
     drawer(
-        b,
-        "tray",
-        "printer",
-        (-0.38 * width, 0, 0.015),
-        (0.38 * width, 0.85 * depth, 0.35 * height),
-        out=-Y,
-        handle=b.maybe(),
+        b, "tray", "printer", (-0.38 * width, 0, 0.015), (0.38 * width, 0.85 * depth, 0.35 * height), handle=b.maybe()
     )
     leaf(
         b,
@@ -249,7 +243,6 @@ def printer(b: ObjectBuilder, width: float, depth: float, height: float) -> None
         (-0.4 * width, -0.012, 0.45 * height),
         (0.4 * width, 0, 0.85 * height),
         hinge=-Z,
-        out=-Y,
         reach=1.4,
         handle=False,
     )
@@ -275,7 +268,6 @@ def desktop_computer(b: ObjectBuilder, width: float, depth: float, height: float
             (width / 2 + 0.004, depth, height),
             hinge=Y,
             out=X,
-            reach=1.6,
             handle=False,
             material="glass",
         )
@@ -284,9 +276,7 @@ def desktop_computer(b: ObjectBuilder, width: float, depth: float, height: float
         b.part("panel", box((width / 2 + g, 0, 0), (width / 2 + g + 0.004, depth, height)), look="steel")
         b.slide("panel", "tower", Y, 0.3)
     for k, z in enumerate(spread(b.count(1, 3), 0.6 * height, height - 0.02)):
-        drawer(
-            b, f"drive_{k}", "tower", (-0.075, 0, z - 0.012), (0.075, 0.18, z + 0.012), out=-Y, handle=False, travel=0.7
-        )
+        drawer(b, f"drive_{k}", "tower", (-0.075, 0, z - 0.012), (0.075, 0.18, z + 0.012), handle=False, travel=0.7)
     button(b, "power", "tower", (0, 0, 0.5 * height), (0.02, 0.02), 0.004, -Y, is_round=b.maybe())
 
 
@@ -328,7 +318,7 @@ def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
 @kind(
     "dentist treatment chair",
     walls=40,
-    words="dentist chair, dental chair, treatment chair, dentist unit, examination chair",
+    words="dental chair, treatment chair, dentist unit, examination chair",
     z=(0.45, 0.6),
 )
 def dentist_chair(b: ObjectBuilder, z: float) -> None:
@@ -436,7 +426,7 @@ def elevator(b: ObjectBuilder, width: float) -> None:
 
 
 @kind(
-    words="snack machine, drinks machine, ticket machine, drink machine, cigarette machine",
+    words="snack machine, drinks machine, ticket machine, cigarette machine",
     width=(0.7, 1.0),
     depth=(0.5, 0.8),
     height=(1.6, 1.9),
@@ -444,28 +434,8 @@ def elevator(b: ObjectBuilder, width: float) -> None:
 def vending_machine(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A door, a flap below, buttons, a coin knob."""
     case(b, "machine", (-width / 2, 0, 0), (width / 2, depth, height), material="steel")
-    leaf(
-        b,
-        "door",
-        "machine",
-        (-width / 2, -0.06, 0.45),
-        (0.25 * width, 0, height),
-        hinge=-X,
-        out=-Y,
-        reach=1.6,
-        material="glass",
-    )
-    leaf(
-        b,
-        "flap",
-        "machine",
-        (-0.35 * width, -0.012, 0.15),
-        (0.15 * width, 0, 0.35),
-        hinge=Z,
-        out=-Y,
-        reach=0.9,
-        handle=False,
-    )
+    leaf(b, "door", "machine", (-width / 2, -0.06, 0.45), (0.25 * width, 0, height), hinge=-X, material="glass")
+    leaf(b, "flap", "machine", (-0.35 * width, -0.012, 0.15), (0.15 * width, 0, 0.35), hinge=Z, reach=0.9, handle=False)
     for i, z in enumerate(spread(b.count(2, 4), 0.8, 1.3)):
         for k, x in enumerate((0.32 * width, 0.38 * width)):
             button(b, f"button_{i}_{k}", "machine", (x, 0, z), (0.03, 0.03), 0.008, -Y, is_round=b.maybe())
@@ -475,7 +445,7 @@ def vending_machine(b: ObjectBuilder, width: float, depth: float, height: float)
 @kind(
     words="one armed bandit, fruit machine, gambling machine",
     size=(0.3, 0.6),
-    number=whole(1, 6, default=3, usual=(2, 4), words="reel, drum"),
+    number=whole(1, 6, usual=(2, 4), words="reel, drum"),
 )
 def slot_machine(b: ObjectBuilder, size: float, number: int) -> None:
     """A lever at the side, reels in a window, a tray."""

@@ -52,7 +52,6 @@ def tool_cart(b: ObjectBuilder, width: float, depth: float, height: float) -> No
                 "cabinet",
                 (-0.46 * width, -depth / 2, low),
                 (0.46 * width, 0.4 * depth, top),
-                out=-Y,
                 material="steel",
             )
             low = top + 0.012
@@ -232,7 +231,6 @@ def fuse_box(b: ObjectBuilder, width: float, height: float) -> None:
         (-width / 2, -0.012, 0),
         (width / 2, 0, height),
         hinge=b.pick(X, -X),
-        out=-Y,
         reach=2.0,
         material="steel",
     )
@@ -330,7 +328,7 @@ def bottle_jack(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     walls=9,
     words="telescopic mast, telescopic antenna, telescopic pole, telescoping boom",
-    number=whole(2, 5, default=3, usual=(2, 4), words="section, stage, tube"),
+    number=whole(2, 5, usual=(2, 4), words="section, stage, tube"),
     radius=(0.02, 0.1),
     height=(0.4, 1.5),
     square=yes(0.5),

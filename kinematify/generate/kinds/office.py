@@ -11,7 +11,7 @@ from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 
-@kind(words="mechanical typewriter", number=whole(3, 12, default=7, usual=(5, 9), words="key"))
+@kind(words="mechanical typewriter", number=whole(3, 12, usual=(5, 9), words="key"))
 def typewriter(b: ObjectBuilder, number: int) -> None:
     width = 0.34
     b.part(
@@ -133,7 +133,7 @@ def dvd_player(b: ObjectBuilder, width: float) -> None:
     button(b, "power", "case", (-0.85 * w, -0.14, 0.03), (0.016, 0.01), 0.004, -Y)
 
 
-@kind(words="gamepad, game pad, controller", size=(0.9, 1.1))
+@kind(words="gamepad, controller", size=(0.9, 1.1))
 def game_controller(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -222,7 +222,7 @@ def computer_keyboard(b: ObjectBuilder, columns: int, rows: int) -> None:
 
 @kind(
     words="rack cabinet, network cabinet, server cabinet",
-    number=whole(1, 8, default=4, usual=(3, 6), words="server, drawer, unit"),
+    number=whole(1, 8, usual=(3, 6), words="server, drawer, unit"),
     height=(1.2, 2.0),
 )
 def server_rack(b: ObjectBuilder, number: int, height: float) -> None:
@@ -244,7 +244,7 @@ def server_rack(b: ObjectBuilder, number: int, height: float) -> None:
         )
         b.cut(f"server_{k}", slab(0.225, (-0.35, 0.32), (z - 0.045, z + 0.045)))
         b.slide(f"server_{k}", "rack", -Y, 0.02)
-    leaf(b, "door", "rack", (-0.3, -0.425, 0.02), (0.3, -0.405, height), hinge=X, out=-Y, reach=2.0, material="glass")
+    leaf(b, "door", "rack", (-0.3, -0.425, 0.02), (0.3, -0.405, height), hinge=X, reach=2.0, material="glass")
 
 
 @kind(words="projection screen, roll up screen", width=(1.2, 2.2))
@@ -287,7 +287,7 @@ def microphone_stand(b: ObjectBuilder, height: float) -> None:
     b.hinge("boom", "post", Y, (0, 0, height + 0.018), 0.7, -0.5)
 
 
-@kind(words="flipchart", width=(0.6, 0.75), height=(1.6, 1.9))
+@kind(width=(0.6, 0.75), height=(1.6, 1.9))
 def flip_chart(b: ObjectBuilder, width: float, height: float) -> None:
     number = 1
     b.part(
@@ -342,7 +342,7 @@ def rubber_stamp(b: ObjectBuilder, width: float) -> None:
     b.slide("handle", "base", -Z, 0.012)
 
 
-@kind("clapperboard", words="film clapper, film slate, clapper board", width=(0.25, 0.35))
+@kind("clapperboard", words="film slate", width=(0.25, 0.35))
 def film_clapper(b: ObjectBuilder, width: float) -> None:
     b.part("board", box((0, 0, 0), (width, 0.008, 0.6 * width)), look="black wood")
     b.part("clapper", box((0, 0, 0.6 * width + 0.001), (width, 0.01, 0.6 * width + 0.03)), look="white wood")
@@ -624,7 +624,7 @@ def work_light(b: ObjectBuilder, height: float) -> None:
 
 @kind(
     "iris diaphragm",
-    words="iris, camera iris, aperture, iris aperture, mechanical iris, iris shutter, aperture diaphragm",
+    words="camera iris, aperture, iris aperture, mechanical iris, iris shutter, aperture diaphragm",
     material="metal",
     blades=whole(5, 14, default=8, words="blade, leaf, lamella"),
     size=(0.7, 2),

@@ -51,7 +51,7 @@ def dutch_door(b: ObjectBuilder, width: float, height: float, thickness: float) 
 
 
 @kind(
-    words="hatch, trapdoor, trap door, roof hatch, deck hatch, attic hatch, loft hatch",
+    words="hatch, trapdoor, roof hatch, deck hatch, attic hatch, loft hatch",
     width=(0.5, 1.0),
     depth=(0.5, 0.9),
     high=(0.02, 0.06),
@@ -85,12 +85,12 @@ def floor_hatch(b: ObjectBuilder, width: float, depth: float, high: float, rim: 
 
 @kind(
     "garden gate",
-    words="gate, yard gate, fence gate, side gate, picket gate, wicket gate",
+    words="yard gate, fence gate, side gate, picket gate, wicket gate",
     usual={"double gate, double garden gate, driveway gates": {"leaves": 2, "width": 2.4}},
     material="wood",
     width=length(0.6, 4, default=1.0, usual=(0.8, 1.4)),
     height=length(0.6, 2, default=1.1, usual=(0.9, 1.4)),
-    leaves=whole(1, 2, default=1, words="leaf, wing, door"),
+    leaves=whole(1, 2, words="leaf, wing, door"),
     pickets=whole(2, 24, default=7, words="picket, bar, slat, board", help="Of every leaf."),
     styles=False,
 )

@@ -44,7 +44,7 @@ def swing_seat(b: ObjectBuilder, width: float) -> None:
 
 @kind(
     "pull-along duck",
-    words="pull along duck, duck on wheels, toy duck",
+    words="duck on wheels, toy duck",
     part_words={"wing": "wings"},
     details={"beak": 1},
     size=(0.8, 1.5),
@@ -79,7 +79,7 @@ def pull_along_duck(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    words="dumb waiter, service lift, food lift, goods lift",
+    words="service lift, food lift, goods lift",
     part_words={"car": "cabin, platform, lift", "door": "hatch, sash, shutter"},
     height=(1.8, 3.0),
 )

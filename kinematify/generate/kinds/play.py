@@ -208,7 +208,6 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
         (-0.43 * width, -0.368, 0.13),
         (0.43 * width, -0.351, 0.77),
         hinge=-X,
-        out=-Y,
         reach=1.8,
         material="steel",
     )
@@ -404,7 +403,7 @@ def synthesizer(b: ObjectBuilder, number: int) -> None:
         knob(b, f"knob_{k}", "case", (x, 0.2, 0.07), 0.01, Z, high=0.014, reach=4.7)
 
 
-@kind(words="castanet", radius=(0.03, 0.05))
+@kind(radius=(0.03, 0.05))
 def castanets(b: ObjectBuilder, radius: float) -> None:
     r = radius
     p = b.sized(r)
@@ -419,7 +418,7 @@ def castanets(b: ObjectBuilder, radius: float) -> None:
     b.hinge("other_shell", "shell", -X, (0, 1.12 * r, 0), 0.6)
 
 
-@kind("nodding dog", words="bobblehead, bobble head, nodding toy, wobbly toy", size=(0.8, 1.3))
+@kind("nodding dog", words="nodding toy, wobbly toy", size=(0.8, 1.3))
 def bobblehead(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -440,7 +439,7 @@ def bobblehead(b: ObjectBuilder, size: float) -> None:
     b.hinge("head", "body", X, p(0, 0, 0.092), 0.12, -0.12)
 
 
-@kind("gymnast toy", words="acrobat toy, high bar toy", size=(0.8, 1.4))
+@kind("gymnast toy", words="high bar toy", size=(0.8, 1.4))
 def acrobat_toy(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -516,7 +515,7 @@ def spyglass(b: ObjectBuilder, length: float, radius: float) -> None:
     part_words={"rod": "bar, pole, row", "bumper": "ring"},
     details={"leg": 4},
     rods=whole(2, 12, default=8, words="bar, pole"),
-    players=whole(1, 5, default=3, words="figure, man", help="Of every rod."),
+    players=whole(1, 5, words="figure, man", help="Of every rod."),
     styles=False,
 )
 def foosball_table(b: ObjectBuilder, rods: int, players: int) -> None:

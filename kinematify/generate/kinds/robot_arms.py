@@ -14,17 +14,12 @@ from kinematify.generate.procedural.workshop import Workshop
 @kind(
     "robot arm",
     words=(
-        "arm, manipulator, robotic arm, serial arm, articulated arm, industrial robot, axis robot, cobot, "
-        "collaborative robot, welding robot, painting robot, robot manipulator, assembly robot"
+        "arm, manipulator, robotic arm, articulated arm, industrial robot, axis robot, cobot, collaborative robot, "
+        "welding robot, painting robot, robot manipulator, assembly robot"
     ),
     material="metal",
     joints=whole(
-        1,
-        12,
-        default=6,
-        usual=(3, 7),
-        help="Joints in series.",
-        words="joint, dof, axis, degree of freedom, degrees of freedom",
+        1, 12, usual=(3, 7), help="Joints in series.", words="joint, dof, axis, degree of freedom, degrees of freedom"
     ),
     length=length(0.2, 3.0, default=0.9, usual=(0.5, 1.5), help="Sum of the links."),
     gripper=choice(
@@ -192,7 +187,7 @@ def gantry(w: Workshop, width: float, depth: float, height: float, clearance: fl
     fingers=whole(2, 6, default=2, usual=(2, 4), help="Two are parallel jaws.", words="finger, jaw"),
     width=length(0.06, 0.5, default=0.12, usual=(0.08, 0.16), help="Of two jaws."),
     finger=length(0.05, 0.3, default=0.07, usual=(0.06, 0.1), help="Its length."),
-    joints=whole(1, 2, default=1, drawn=False, help="Of every finger; parallel jaws have one.", words="knuckle"),
+    joints=whole(1, 2, drawn=False, help="Of every finger; parallel jaws have one.", words="knuckle"),
 )
 def gripper(w: Workshop, fingers: int, width: float, finger: float, joints: int, open: float, clearance: float) -> None:
     """Grippers: parallel jaws on a rail, or fingers on pins around a palm."""
@@ -212,9 +207,8 @@ def gripper(w: Workshop, fingers: int, width: float, finger: float, joints: int,
         "prosthesis, bionic hand"
     ),
     title="robot hand",
-    material="plastic",
-    fingers=whole(1, 8, default=4, usual=(2, 5), help="Side by side.", words="finger"),
-    joints=whole(1, 5, default=3, usual=(2, 4), help="Of every finger.", words="joint, phalanx, segment, knuckle"),
+    fingers=whole(1, 8, usual=(2, 5), help="Side by side.", words="finger"),
+    joints=whole(1, 5, usual=(2, 4), help="Of every finger.", words="joint, phalanx, segment, knuckle"),
     phalanx=length(0.02, 0.2, default=0.045, usual=(0.035, 0.06), help="First phalanx."),
     finger_width=length(0.01, 0.06, default=0.018, usual=(0.014, 0.022), help="Width."),
 )

@@ -47,9 +47,9 @@ def drawer_stacks(text: str) -> list[int]:
 
 @kind(
     words=(
-        "cupboard, chest, chest of drawers, shelf, pantry, kitchen unit, base unit, wall unit, tallboy, storage unit, "
-        "bureau, chiffonier, vitrine, drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, "
-        "desk organiser, kitchen cabinet, kitchen cupboard, display cabinet, office cabinet"
+        "cupboard, chest, shelf, pantry, kitchen unit, base unit, wall unit, tallboy, storage unit, bureau, "
+        "chiffonier, vitrine, drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, kitchen "
+        "cabinet, kitchen cupboard, display cabinet, office cabinet"
     ),
     title="cabinet or chest",
     material="wood",
@@ -263,9 +263,9 @@ def cabinet(
 
 @kind(
     words=(
-        "desk, writing desk, workbench, console table, vanity, side table, study desk, writing table, school table, "
-        "reading desk, entrance table, drawer table, hall table, dressing table, vanity table, console table with "
-        "drawers, desk with drawers"
+        "desk, writing desk, console table, vanity, side table, study desk, writing table, school table, reading desk, "
+        "entrance table, drawer table, hall table, dressing table, vanity table, console table with drawers, desk with "
+        "drawers"
     ),
     usual={
         "desk with pedestal, pedestal desk, computer desk, office desk": {
@@ -389,8 +389,8 @@ def table(
     seat=length(0.3, 0.5, default=0.44, usual=(0.4, 0.47), help="Level of the seat."),
     depth=length(0.2, 0.42, default=0.35, usual=(0.3, 0.4), help="Of the seat."),
     rail=length(0.022, 0.045, default=0.028, usual=(0.024, 0.034), help="Of the bars."),
-    slats=whole(1, 6, default=3, usual=(1, 4), help="Of the back.", words="slat"),
-    boards=whole(1, 8, default=4, usual=(1, 6), help="Of the seat.", words="board"),
+    slats=whole(1, 6, usual=(1, 4), help="Of the back.", words="slat"),
+    boards=whole(1, 8, usual=(1, 6), help="Of the seat.", words="board"),
 )
 def folding_chair(
     w: Workshop,
@@ -462,7 +462,6 @@ def folding_chair(
         "swivel chair, desk chair, computer chair, chair, task chair, gaming chair, drafting chair, "
         "conference chair, executive chair, student chair, revolving chair, spinning chair"
     ),
-    material="plastic",
     castors=whole(
         3, 6, default=5, usual=(4, 6), help="Each turns and has a wheel.", words="castor, caster, wheel, roller, leg"
     ),

@@ -43,8 +43,8 @@ if TYPE_CHECKING:
     width=length(0.14, 0.5, default=0.19, usual=(0.16, 0.32), help="Outer width."),
     depth=length(0.2, 0.5, default=0.28, usual=(0.24, 0.36), help="Outer depth."),
     height=length(0.15, 0.35, default=0.19, usual=(0.17, 0.24), help="Outer height."),
-    levers=whole(1, 2, default=1, help="In front.", words="lever, handle"),
-    slots=whole(1, 4, default=2, usual=(1, 2), help="In all; each lever has as many.", words="slot, slice"),
+    levers=whole(1, 2, help="In front.", words="lever, handle"),
+    slots=whole(1, 4, usual=(1, 2), help="In all; each lever has as many.", words="slot, slice"),
     knob=choice({"knob": "dial", "none": ""}, help="One beside every lever."),
     tray=choice({"tray": "crumb tray", "none": ""}, help="For crumbs."),
 )
@@ -132,10 +132,9 @@ def toaster(
 
 @kind(
     words=(
-        "coffee maker, espresso machine, coffeemaker, coffee brewer, espresso maker, filter coffee machine, drip "
-        "coffee maker, coffee brewing machine"
+        "coffee maker, espresso machine, coffee brewer, espresso maker, filter coffee machine, drip coffee maker, "
+        "coffee brewing machine"
     ),
-    material="plastic",
     width=length(0.16, 0.8, default=0.22, usual=(0.18, 0.3), help="Outer width."),
     depth=length(0.22, 0.5, default=0.26, usual=(0.24, 0.34), help="Outer depth."),
     height=length(0.28, 0.6, default=0.34, usual=(0.3, 0.42), help="Outer height."),
@@ -143,7 +142,7 @@ def toaster(
         {"filter": "drip, jug, carafe", "espresso": "portafilter"}, help="A jug under a filter, or portafilters."
     ),
     groups=whole(1, 3, default=1, usual=(1, 2), help="For espresso.", words="group, spout"),
-    buttons=whole(0, 5, default=2, usual=(0, 4), help="In a row.", words="key"),
+    buttons=whole(0, 5, usual=(0, 4), help="In a row.", words="key"),
     button=choice(("square", "round"), help="Their shape."),
     hinge=choice(("edge", "barrel"), help="Of the filter: hidden or visible."),
 )
@@ -288,7 +287,6 @@ def coffee_machine(
 @kind(
     usual={"ceiling fan, overhead fan": {"kind": "ceiling"}},
     words=("ventilator, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, usb fan, electric fan"),
-    material="plastic",
     kind=choice(
         {"stand": "desk, table, floor, pedestal, standing", "ceiling": "", "box": "window"},
         help="On a stand, under a ceiling, or in a box.",

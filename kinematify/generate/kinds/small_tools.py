@@ -19,7 +19,7 @@ from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, pris
     title="pair of scissors",
     material="steel",
     length=length(0.08, 0.35, default=0.18, usual=(0.12, 0.25), help="Over all."),
-    blade=share(0.35, 0.65, default=0.5, usual=(0.42, 0.58), help="Share of the length."),
+    blade=share(0.35, 0.65, usual=(0.42, 0.58), help="Share of the length."),
     thick=length(0.002, 0.004, default=0.0025, usual=(0.002, 0.003), help="Of a blade."),
     loops=choice(
         ("round", "oval", "mixed"), help="Of the handles: both round, both long, or one of each.", words="loop, handle"
@@ -71,8 +71,8 @@ def scissors(b: ObjectBuilder, length: float, blade: float, thick: float, loops:
 
 @kind(
     words=(
-        "pair of pliers, combination pliers, wire cutters, wire cutter, side cutter, nippers, cutting pliers, lineman "
-        "pliers, long nose pliers, electrician pliers, needle nose pliers"
+        "pair of pliers, combination pliers, wire cutters, side cutter, nippers, cutting pliers, lineman pliers, long "
+        "nose pliers, electrician pliers, needle nose pliers"
     ),
     title="pair of pliers",
     material="steel",
@@ -220,7 +220,6 @@ def stapler(b: ObjectBuilder, length: float, width: float, cover: float, cover_s
         "ballpoint pen, ballpoint, ball pen, biro, fountain pen, felt pen, marker, click pen, retractable "
         "pen, gel pen, rollerball pen, mechanical pencil"
     ),
-    material="plastic",
     length=length(0.1, 0.2, default=0.14, usual=(0.125, 0.155), help="Of the barrel."),
     width=length(0.009, 0.02, default=0.011, usual=(0.0095, 0.013), help="Outer diameter.", words="diameter"),
     mechanism=choice(
@@ -329,7 +328,6 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
         "wall clock, kitchen clock, station clock, table clock, analog clock, alarm clock, desk clock, office "
         "clock, school clock, hallway clock, mantel clock"
     ),
-    material="plastic",
     part_words={"hand": "hour hand, minute hand, second hand"},
     width=length(0.12, 1.0, default=0.3, usual=(0.2, 0.45), help="Outer width or diameter.", words="diameter"),
     depth=length(0.04, 0.12, default=0.05, usual=(0.04, 0.07), help="Of the case."),
@@ -412,7 +410,7 @@ def clock(b: ObjectBuilder, width: float, depth: float, frame: float, hands: int
 
 
 @kind(
-    words="secateur, pruning shears, garden secateurs, pruner, hand pruner, garden pruner, pruning scissors",
+    words="pruning shears, garden secateurs, pruner, hand pruner, garden pruner, pruning scissors",
     part_words={"blade": "jaw, cutter, handle"},
     length=(0.15, 0.25),
     styles=False,

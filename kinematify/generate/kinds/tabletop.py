@@ -37,7 +37,6 @@ def plain_bag(b: ObjectBuilder, width: float, depth: float, height: float, wire:
             hinge=Y,
             out=Z,
             handle=False,
-            glazed=0.0,
             reach=b.draw(1.5, 2.8),
         )
     half = b.draw(0.15, 0.35) * width

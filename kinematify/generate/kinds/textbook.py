@@ -151,7 +151,7 @@ def crank_slider(b: ObjectBuilder, radius: float) -> None:
     b.close("piston", "rod", (r + l, -0.45 * r, 0))
 
 
-@kind(words="four-bar linkage, four bar mechanism, parallelogram linkage, parallel linkage", length=(0.12, 0.3))
+@kind(words="four bar mechanism, parallelogram linkage, parallel linkage", length=(0.12, 0.3))
 def four_bar_linkage(b: ObjectBuilder, length: float) -> None:
     L = length
     t = 0.04 * L
@@ -356,7 +356,7 @@ def worm_gear(b: ObjectBuilder, radius: float) -> None:
     b.follow("wheel", "worm", 0.04)
 
 
-@kind(words="bevel gear, right angle gearbox, angle drive", radius=(0.03, 0.08))
+@kind(words="right angle gearbox, angle drive", radius=(0.03, 0.08))
 def bevel_gears(b: ObjectBuilder, radius: float) -> None:
     r = radius
     p = b.sized(r)
@@ -423,7 +423,7 @@ def planetary_gear(b: ObjectBuilder, radius: float, number: int) -> None:
         b.follow(f"planet_{k}", "carrier", -3)
 
 
-@kind("cam and follower", words="cam follower, cam mechanism", radius=(0.03, 0.06))
+@kind("cam and follower", words="cam mechanism", radius=(0.03, 0.06))
 def cam_follower(b: ObjectBuilder, radius: float) -> None:
     """The cam lifts the follower by contact alone, and its weight brings it back; no joint couples them."""
     r = radius
@@ -687,7 +687,7 @@ def belt_drive(b: ObjectBuilder, radius: float) -> None:
 
 
 @kind(
-    words="leadscrew, ball screw, linear screw drive, screw drive, linear actuator stage, spindle drive",
+    words="ball screw, linear screw drive, screw drive, linear actuator stage, spindle drive",
     length=(0.25, 0.7),
 )
 def lead_screw(b: ObjectBuilder, length: float) -> None:

@@ -76,7 +76,7 @@ def horse_carriage(b: ObjectBuilder) -> None:
         look="dark red wood",
     )
     b.cut("body", p.slab(0.72, 0.53, (0.87, 1.93)), p.slab(0.3, (-1, 0), (0.9, 1.9)), p.slab(0.6, (0, 1), (1.3, 1.8)))
-    leaf(b, "door", "body", p(-0.31, -0.63, 0.88), p(0.31, -0.601, 1.92), hinge=X, out=-Y, reach=0.7)
+    leaf(b, "door", "body", p(-0.31, -0.63, 0.88), p(0.31, -0.601, 1.92), hinge=X, reach=0.7)
     for i, (x, s) in enumerate([(x, s) for x in (-0.55, 0.55) for s in (-1, 1)]):
         wheel(
             b,
@@ -129,7 +129,7 @@ def snowmobile(b: ObjectBuilder) -> None:
     b.hinge("handlebar", "body", Z, p(0.3, 0, 0), 0.6, -0.6)
 
 
-@kind(walls=20, words="gokart, go-kart, soap box, soapbox car")
+@kind(walls=20, words="soap box, soapbox car")
 def go_kart(b: ObjectBuilder) -> None:
     size = b.pick(1, 0.2)
     p = b.sized(size)
@@ -364,19 +364,8 @@ def caravan(b: ObjectBuilder) -> None:
         p.box((0.6, -2, 0.6), (1.3, 0, 2.3)),
         p.box((-1.3, -2, 1.3), (0.1, 0, 2.1)),
     )
-    leaf(b, "door", "body", p(0.58, -1.04, 0.58), p(1.32, -1.001, 2.32), hinge=X, out=-Y, reach=1.7, material="metal")
-    leaf(
-        b,
-        "flap",
-        "body",
-        p(-1.32, -1.04, 1.28),
-        p(0.12, -1.001, 2.12),
-        hinge=Z,
-        out=-Y,
-        reach=1.6,
-        handle=False,
-        material="metal",
-    )
+    leaf(b, "door", "body", p(0.58, -1.04, 0.58), p(1.32, -1.001, 2.32), hinge=X, reach=1.7, material="metal")
+    leaf(b, "flap", "body", p(-1.32, -1.04, 1.28), p(0.12, -1.001, 2.12), hinge=Z, handle=False, material="metal")
     for k, s in enumerate((-1, 1)):
         wheel(
             b,

@@ -145,8 +145,8 @@ def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -
 @kind(
     walls=35,
     words=(
-        "delivery van, minivan, camper van, ambulance, transporter van, campervan, cargo van, transporter, camper, "
-        "mail van, post van, police van, panel van, bakery van, news van"
+        "delivery van, minivan, camper van, ambulance, transporter van, cargo van, transporter, camper, mail van, post "
+        "van, police van, panel van, bakery van, news van"
     ),
     length=(4.5, 6.0),
     width=(1.8, 2.1),
@@ -191,8 +191,7 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
     "bus",
     walls=65,
     words=(
-        "tram, city bus, coach, streetcar, trolley bus, school bus, tour bus, trolleybus, shuttle bus, airport "
-        "shuttle, tram car"
+        "tram, city bus, coach, streetcar, trolley bus, school bus, tour bus, shuttle bus, airport shuttle, tram car"
     ),
     length=(6.0, 12.0),
     swings=yes(0.5),
@@ -217,7 +216,6 @@ def bus_or_tram(b: ObjectBuilder, length: float, swings: bool) -> None:
                     (a, -w / 2 - 0.04, r + 0.1),
                     (b_, -w / 2, r + 2.1),
                     hinge=s * X,
-                    out=-Y,
                     reach=1.5,
                     material="glass",
                 )
@@ -227,7 +225,7 @@ def bus_or_tram(b: ObjectBuilder, length: float, swings: bool) -> None:
     axles(b, "body", (-0.35 * length, 0.3 * length), w / 2, r, 0.28, 0.02)
 
 
-@kind(words="longboard, skate board", length=(0.6, 0.9), width=(0.18, 0.24), radius=(0.025, 0.035))
+@kind(words="longboard", length=(0.6, 0.9), width=(0.18, 0.24), radius=(0.025, 0.035))
 def skateboard(b: ObjectBuilder, length: float, width: float, radius: float) -> None:
     """A deck, two trucks that tilt, four wheels."""
     b.part(
@@ -319,7 +317,7 @@ def shopping_cart(b: ObjectBuilder, length: float, width: float, height: float) 
         caster(b, f"caster_{k}", "cart", (x, y, 0.12), 0.12)
 
 
-@kind(words="speed boat, speedboat, outboard boat, motorboat, power boat", length=(3.0, 7.0))
+@kind(words="speed boat, outboard boat, power boat", length=(3.0, 7.0))
 def motor_boat(b: ObjectBuilder, length: float) -> None:
     """An outboard that steers, its propeller, a steering wheel, a hatch."""
     p = b.sized(length)
@@ -406,7 +404,6 @@ def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height
         (-length / 2, width / 2, z + 0.05 + height),
         hinge=-Z,
         out=-X,
-        reach=1.6,
         handle=b.maybe(),
     )
     x = length / 2 + 0.6
@@ -457,7 +454,7 @@ def wind_turbine(b: ObjectBuilder, height: float) -> None:
 
 
 @kind(
-    words="letter box, post box, letterbox, postbox, mail box",
+    words="letter box, post box",
     part_words={"door": "flap"},
     width=(0.15, 0.25),
     length=(0.35, 0.55),

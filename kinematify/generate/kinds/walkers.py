@@ -90,8 +90,7 @@ def quadruped(
         "spider, ant robot, beetle robot"
     ),
     title="robot on six legs",
-    material="plastic",
-    legs=whole(4, 8, default=6, usual=(6, 8), help="Around the trunk.", words="leg"),
+    legs=whole(4, 8, usual=(6, 8), help="Around the trunk.", words="leg"),
     joints=whole(2, 3, default=3, help="Of every leg.", words="joint, joint per leg, dof"),
     trunk=length(0.12, 1.0, default=0.2, usual=(0.14, 0.3), help="Its diameter."),
     femur=length(0.1, 0.5, default=0.12, usual=(0.1, 0.18), help="Its length."),
@@ -154,14 +153,13 @@ def hexapod(
         "man, toy humanoid"
     ),
     title="robot with arms and legs",
-    material="plastic",
     thigh=length(0.25, 0.6, default=0.36, usual=(0.3, 0.42), help="Its length."),
     shank=length(0.25, 0.6, default=0.36, usual=(0.3, 0.42), help="Its length."),
     torso=length(0.3, 0.7, default=0.42, usual=(0.36, 0.5), help="Its height."),
     shoulders=length(0.36, 0.9, default=0.5, usual=(0.44, 0.56), help="Their width."),
     upper_arm=length(0.16, 0.45, default=0.26, usual=(0.22, 0.3), help="Its length."),
     forearm=length(0.15, 0.4, default=0.22, usual=(0.2, 0.28), help="Its length."),
-    joint_radius=length(0.02, 0.036, default=0.028, usual=(0.022, 0.032), help="Of the stubs."),
+    joint_radius=length(0.02, 0.036, usual=(0.022, 0.032), help="Of the stubs."),
     feet=choice({"feet": "foot", "none": ""}, help="Feet on ankles."),
     hands=choice(("turning", "fixed"), help="Of the palms about the forearms."),
 )
@@ -309,7 +307,6 @@ def humanoid(
         "tentacle robot, toy snake"
     ),
     title="snake robot",
-    material="plastic",
     segments=whole(2, 40, default=8, usual=(4, 10), help="In a row.", words="segment, module, link"),
     radius=length(0.01, 0.2, default=0.03, usual=(0.02, 0.05), help="Of the body."),
     segment=length(0.05, 1.0, default=0.15, usual=(0.12, 0.25), help="Its length."),

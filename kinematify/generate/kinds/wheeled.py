@@ -98,7 +98,6 @@ def folding_table(b: ObjectBuilder, width: float, depth: float, height: float, t
             inset=True,
             handle=False,
             out=b.pick(Z, -Z),
-            glazed=0.0,
             reach=b.draw(1.4, 1.6),
         )
 

@@ -172,7 +172,7 @@ def circular_saw(b: ObjectBuilder, size: float) -> None:
     b.hinge("guard", "body", Y, p(0, 0, 0.1), 1.6)
 
 
-@kind(words="chain saw", size=(0.9, 1.1))
+@kind(size=(0.9, 1.1))
 def chainsaw(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
@@ -200,7 +200,7 @@ def chainsaw(b: ObjectBuilder, size: float) -> None:
     b.slide("starter", "body", -Y, 0.04)
 
 
-@kind(words="bandsaw", height=(0.8, 1.3))
+@kind(height=(0.8, 1.3))
 def band_saw(b: ObjectBuilder, height: float) -> None:
     b.part(
         "frame",
@@ -219,7 +219,7 @@ def band_saw(b: ObjectBuilder, height: float) -> None:
     b.cut("frame", box((0.097, 0, 0.42), (0.145, 0.2, 0.48)))
     b.part("frame", box((0.145, 0.03, 0.4), (0.17, 0.12, 0.45)))
     b.hinge("table", "frame", Y, (0.12, 0, 0.44), 0.05, -0.02)
-    leaf(b, "door", "frame", (-0.29, -0.07, 0.01), (0.29, -0.052, 0.39), hinge=-X, out=-Y, reach=1.8, material="steel")
+    leaf(b, "door", "frame", (-0.29, -0.07, 0.01), (0.29, -0.052, 0.39), hinge=-X, reach=1.8, material="steel")
     b.part(
         "guide",
         box((0.08, 0.05, 0.75 * height), (0.1, 0.07, height - 0.002)),
@@ -229,7 +229,7 @@ def band_saw(b: ObjectBuilder, height: float) -> None:
     b.slide("guide", "frame", -Z, 0.125 * height)
 
 
-@kind(words="sawhorse, folding trestle, trestle", width=(0.7, 1.1), height=(0.6, 0.85))
+@kind(words="folding trestle, trestle", width=(0.7, 1.1), height=(0.6, 0.85))
 def saw_horse(b: ObjectBuilder, width: float, height: float) -> None:
     w = width / 2
     lean = 0.28 * height
@@ -535,8 +535,8 @@ def hose_nozzle(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     words=(
-        "dump cart, garden wagon, hand wagon, bollerwagen, pull wagon, wagon, toy wagon, handcart, pull cart, "
-        "hand cart, beach wagon"
+        "dump cart, garden wagon, hand wagon, bollerwagen, pull wagon, wagon, toy wagon, handcart, pull cart, beach "
+        "wagon"
     ),
     length=(0.7, 1.1),
     width=(0.45, 0.6),
@@ -656,7 +656,7 @@ def chicken_coop(b: ObjectBuilder, width: float, height: float) -> None:
         box((-0.7 * w, -t - 1, 0.15), (-0.1 * w, 0, 0.8 * height)),
         box((0.2 * w, -t - 1, 0.4 * height), (0.8 * w, 0, 0.75 * height)),
     )
-    leaf(b, "door", "house", (-0.75 * w, -t - 0.018, 0.13), (-0.05 * w, -t, 0.84 * height), hinge=-X, out=-Y, reach=1.9)
+    leaf(b, "door", "house", (-0.75 * w, -t - 0.018, 0.13), (-0.05 * w, -t, 0.84 * height), hinge=-X, reach=1.9)
     leaf(
         b,
         "roof",
@@ -670,7 +670,7 @@ def chicken_coop(b: ObjectBuilder, width: float, height: float) -> None:
     )
 
 
-@kind(words="bee hive", number=whole(1, 8, default=4, usual=(3, 6), words="frame"))
+@kind(number=whole(1, 8, usual=(3, 6), words="frame"))
 def beehive(b: ObjectBuilder, number: int) -> None:
     b.part(
         "box",
@@ -727,7 +727,7 @@ def garden_roller(b: ObjectBuilder, width: float, radius: float) -> None:
     b.spin("drum", "handle", X, (0, 0, radius))
 
 
-@kind(words="snow thrower, snowblower", size=(0.9, 1.2))
+@kind(words="snow thrower", size=(0.9, 1.2))
 def snow_blower(b: ObjectBuilder, size: float) -> None:
     p = b.sized(size)
     b.part(
