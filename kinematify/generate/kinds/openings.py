@@ -86,7 +86,7 @@ def floor_hatch(b: ObjectBuilder, width: float, depth: float, high: float, rim: 
 @kind(
     "garden gate",
     words="yard gate, fence gate, side gate, picket gate, wicket gate",
-    usual={"double gate, double garden gate, driveway gates": {"leaves": 2, "width": 2.4}},
+    usual={"double gate, double garden gate": {"leaves": 2, "width": 2.4}},
     material="wood",
     width=length(0.6, 4, default=1.0, usual=(0.8, 1.4)),
     height=length(0.6, 2, default=1.1, usual=(0.9, 1.4)),
