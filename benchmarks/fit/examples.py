@@ -16,7 +16,7 @@ from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses, JointType
 from kinematify.joints.choice.decide import edge_features
-from kinematify.joints.choice.judge import alike_edges, rightness
+from kinematify.joints.choice.judge import rightness
 from kinematify.joints.choice.opening import measure_sides
 from kinematify.joints.features.edge_scene import part_frames
 from kinematify.joints.features.workspace import Cloud, PartCache, point_cloud
@@ -65,7 +65,7 @@ class Example:
     by_cues: int
     """Position of what the weighted cues alone would choose."""
     alike: int
-    """The same number for edges of an object that are alike (`twins.alike_edges`), -1 for all others."""
+    """The same number for edges of an object that are alike (`AlikeParts.edges`), -1 for all others."""
     broken: bool = False
     """The object has pieces broken off; such edges teach what is fixed, not which joint is right."""
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
@@ -124,7 +124,7 @@ def examples_of(
     tree = KinematicTree(parents=tuple(truth.parents))
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
     frames = part_frames(cache, tree, config.joints)
-    alike = alike_edges(graph, tree)
+    alike = graph.alike.edges(tree)
     found = []
     for edge in tree.edges():
         joints = [joint for joint in truth.joints if (joint.parent, joint.child) == edge]

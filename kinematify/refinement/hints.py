@@ -297,7 +297,7 @@ def _models_first(hints: Sequence[Hint]) -> list[Hint]:
 def _as_twin(inference: Inference, model: JointEstimate, joint: JointEstimate) -> JointEstimate:
     """A joint as that of the part of which the user said that it is its twin."""
     names, config = inference.assembly.names, inference.config
-    carried = TwinJoints(inference.assembly, inference.graph, config.bearing, seed=config.seed).carried(model, joint)
+    carried = TwinJoints(inference.assembly, inference.graph, seed=config.seed).carried(model, joint)
     if not carried:
         raise InputError(
             f"The hint {names[joint.child]}:twin={names[model.child]} cannot be followed: no motion or reflection "

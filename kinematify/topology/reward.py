@@ -121,7 +121,7 @@ def mean_over_edges(tree: TreeLayout, weights: FloatArray) -> float:
     return float(weights[tree.parents[tree.children], tree.children].mean())
 
 
-def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], cluster_of: Sequence[int]) -> float:
+def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], kind: IntArray) -> float:
     """Our R_sym in [0, 1]: equal depths, and parents that are one part or one cluster, each part used equally often.
 
     The paper asks for one shared parent, which is false for knees: each hangs on its own thigh, and the thighs
@@ -129,7 +129,7 @@ def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], 
     """
     scores = []
     for cluster in clusters:
-        kinds = _parent_kinds([int(tree.parents[part]) for part in cluster], cluster_of)
+        kinds = _parent_kinds([int(tree.parents[part]) for part in cluster], kind)
         excess = min(kinds - 1, len(cluster) - 1)
         scores.append(0.5 * equal_depth(tree, cluster) + 0.5 * (1 - excess / (len(cluster) - 1)))
     return float(np.mean(scores)) if scores else 1.0
@@ -245,7 +245,7 @@ class TreeReward:
     def own_terms(self, tree: TreeLayout, base_score: float) -> dict[str, float]:
         """The terms in which this reward differs from other ones."""
         return {
-            "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.cluster_of),
+            "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.alike.kind),
             "hier": log_hierarchy(tree, self.hulls),
             "base": base_score,
             "stack": side_by_side(tree, self.stacks),
@@ -279,9 +279,8 @@ def equal_depth(tree: TreeLayout, cluster: Sequence[int]) -> float:
     return float(1 / (1 + np.var(tree.depth[list(cluster)])))
 
 
-def _parent_kinds(parents: Sequence[int], cluster_of: Sequence[int]) -> int:
+def _parent_kinds(parents: Sequence[int], kind: IntArray) -> int:
     """Number of different clusters or lone parts among the parents, one more where twins carry unequal numbers."""
     present = [parent for parent in parents if parent >= 0]
-    kinds = {(cluster_of[parent], -1) if cluster_of[parent] >= 0 else (-1, parent) for parent in present}
     counts = {present.count(parent) for parent in present}
-    return max(len(kinds) + (len(counts) > 1), 1)
+    return max(len(set(kind[present].tolist())) + (len(counts) > 1), 1)

@@ -8,7 +8,7 @@ import yourdfpy
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build_graph import find_clusters
+from kinematify.contact.alike import find_clusters
 from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import part_stats
 from kinematify.geometry.surface import PartSurface

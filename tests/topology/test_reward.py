@@ -39,12 +39,12 @@ def test_symmetry_of_the_paper() -> None:
 
 def test_corresponding_parents_count_as_symmetric() -> None:
     legs = terms.layout_tree([-1, 0, 0, 1, 2])
-    labels = (-1, 0, 0, 1, 1)
-    assert terms.corresponding_symmetry(legs, [(1, 2), (3, 4)], labels) == pytest.approx(1.0)
+    kind = np.array([0, 1, 1, 3, 3])
+    assert terms.corresponding_symmetry(legs, [(1, 2), (3, 4)], kind) == pytest.approx(1.0)
     # Three knees on two thighs: one thigh carries two, the other one.
     crooked = terms.layout_tree([-1, 0, 0, 1, 1, 2])
-    assert terms.corresponding_symmetry(crooked, [(1, 2), (3, 4, 5)], (-1, 0, 0, 1, 1, 1)) < 1.0
-    assert terms.corresponding_symmetry(legs, [], (-1,) * 5) == 1.0
+    assert terms.corresponding_symmetry(crooked, [(1, 2), (3, 4, 5)], np.array([0, 1, 1, 3, 3, 3])) < 1.0
+    assert terms.corresponding_symmetry(legs, [], np.arange(5)) == 1.0
 
 
 def test_hierarchy_of_the_paper_and_ours() -> None:

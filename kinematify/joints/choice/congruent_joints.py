@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from kinematify.contact.alike import REACH, SAMPLES, TOLERANCE, RigidMotion, matched, motions_between
 from kinematify.contact.graph import pair
 from kinematify.geometry.sampling import sample_surface
-from kinematify.joints.bearings.congruent_contacts import RigidMotion, matched, motions_between
 from kinematify.joints.bearings.line import Line
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
-    from kinematify.config import BearingConfig
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.candidate import JointEstimate
     from kinematify.robot.arrays import FloatArray
@@ -30,9 +29,9 @@ _VERTICES = 2000
 class TwinJoints:
     """Motions between the contacts of congruent parts, each found once."""
 
-    def __init__(self, assembly: Assembly, graph: ContactGraph, config: BearingConfig, *, seed: int) -> None:
+    def __init__(self, assembly: Assembly, graph: ContactGraph, *, seed: int) -> None:
         """Keep the parts; clouds and motions are made when first asked for."""
-        self._assembly, self._graph, self._config, self._seed = assembly, graph, config.twins, seed
+        self._assembly, self._graph, self._seed = assembly, graph, seed
         self._clouds: dict[int, FloatArray] = {}
         self._between: dict[Edge, list[RigidMotion]] = {}
 
@@ -49,7 +48,7 @@ class TwinJoints:
         found = []
         tree = cKDTree(self._cloud(twin[0]))
         for motion in self._of_parts(model[1], twin[1]):
-            if self._contact_misses(model, twin, motion) <= self._config.reach * self._diagonal(twin[1]):
+            if self._contact_misses(model, twin, motion) <= REACH * self._diagonal(twin[1]):
                 found.append((float(tree.query(motion.points(self._cloud(model[0])))[0].mean()), motion))
         return [motion for _, motion in sorted(found, key=lambda item: item[0])]
 
@@ -68,7 +67,7 @@ class TwinJoints:
 
     def _of_parts(self, first: int, second: int) -> list[RigidMotion]:
         if (first, second) not in self._between:
-            tolerance = self._config.tolerance * min(self._diagonal(first), self._diagonal(second))
+            tolerance = TOLERANCE * min(self._diagonal(first), self._diagonal(second))
             motions = motions_between(self._cloud(first), self._cloud(second), tolerance=tolerance)
             self._between[first, second] = [self._exact(motion, first, second) for motion in motions]
         return self._between[first, second]
@@ -79,7 +78,7 @@ class TwinJoints:
         if len(one) != len(other) or len(one) > _VERTICES:
             return motion
         finer, apart = matched(one, other, cKDTree(other), motion)
-        return finer if apart < self._config.tolerance * self._diagonal(second) else motion
+        return finer if apart < TOLERANCE * self._diagonal(second) else motion
 
     def _contact_misses(self, model: Edge, twin: Edge, motion: RigidMotion) -> float:
         """Measure how far the contact of one edge is from that of the other after a motion [m]; 0 without contacts."""
@@ -100,7 +99,7 @@ class TwinJoints:
 
     def _cloud(self, part: int) -> FloatArray:
         if part not in self._clouds:
-            samples = sample_surface(self._assembly.parts[part], self._config.samples, self._seed)
+            samples = sample_surface(self._assembly.parts[part], SAMPLES, self._seed)
             self._clouds[part] = samples.points
         return self._clouds[part]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
-from kinematify.joints.choice.judge import agreed, alike_edges, judge
+from kinematify.joints.choice.judge import agreed, judge
 from kinematify.joints.choice.limits import find_range
 from kinematify.joints.features.columns import features_of
 from kinematify.joints.features.edge_scene import joint_scene, part_frames
@@ -71,7 +71,7 @@ def estimate_joints(
             judged = [replace(item, prior=given, fixed=fixed) for item, given in zip(judged, likely, strict=True)]
         return [with_exact_lines(assembly, _estimate(*pair, config=config)) for pair in zip(found, judged, strict=True)]
 
-    groups = alike_edges(graph, tree)
+    groups = graph.alike.edges(tree)
     together = {edge for group in groups for edge in group}
     groups += [[edge] for edge in tree.edges() if edge not in together]
     estimates = {(joint.parent, joint.child): joint for joints in each(joints_of, groups) for joint in joints}

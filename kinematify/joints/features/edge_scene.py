@@ -307,14 +307,8 @@ def joint_scene(
 def _leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
     """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
     parent, child = edge
-    label = graph.cluster_of[child]
-    if label < 0 or tree.children[child]:
-        return ()
-    return tuple(
-        part
-        for part in graph.clusters[label]
-        if part != child and tree.parents[part] == parent and not tree.children[part]
-    )
+    twins = () if tree.children[child] else graph.alike.others(child)
+    return tuple(part for part in twins if tree.parents[part] == parent and not tree.children[part])
 
 
 def _journal(cache: PartCache, parent: int, child: int, frame: BoxFrame, config: JointsConfig) -> Journal | None:

@@ -759,8 +759,7 @@ def neighbours(m: MeasuredHypotheses) -> Values:
     """Congruent parts, in which direction they stand, and what else the child touches or carries."""
     scene, h = m.scene, m.hypotheses
     graph, count = scene.cache.graph, len(h)
-    label = graph.cluster_of[scene.child]
-    twins = [part for part in graph.clusters[label] if part != scene.child] if label >= 0 else []
+    twins = graph.alike.others(scene.child)
     touched = [edge for edge in graph.edges if scene.child in (edge.a, edge.b) and not edge.bridge]
     result = {
         "twins": np.full(count, float(len(twins))),

@@ -48,11 +48,11 @@ def find_pins(
         config: `topology` says what is clear and what is one line, `joints` how contacts are asked.
     """
     lines = {edge: bearing.lines[0] for edge, bearing in bearings.items() if bearing.lines}
-    topology, label = config.topology, graph.cluster_of
+    topology, kind = config.topology, graph.alike.kind
     doubtful = [
         (a, b)
         for a, b in on_cycles(graph.by_pair, graph.n_parts)
-        if (a, b) in lines and (lines[a, b].score < topology.clear_score or label[a] == label[b] >= 0)
+        if (a, b) in lines and (lines[a, b].score < topology.clear_score or kind[a] == kind[b])
     ]
     hulls = [item.hull_volume for item in assembly_stats(assembly)]
     found = coaxial_carriers(lines, angle=topology.stack_deg, distance=topology.stack_distance * assembly.diagonal)

@@ -211,8 +211,7 @@ def _bridges_a_seam(scene: JointScene) -> bool:
     Buttons sit in one part, or beside their like.
     """
     graph, child = scene.cache.graph, scene.child
-    cluster = graph.cluster_of[child]
     touched = [
         edge.b if edge.a == child else edge.a for edge in graph.edges if child in (edge.a, edge.b) and not edge.bridge
     ]
-    return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
+    return any(part in scene.others and part not in graph.alike.others(child) for part in touched)
