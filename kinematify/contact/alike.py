@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
-SAMPLES = 400  # spacing of 5 % of a part's size; a motion is exact to a tenth of that
+_SAMPLES = 400  # spacing of 5 % of a part's size; a motion is exact to a tenth of that
 """Points per part that are laid upon each other."""
 TOLERANCE = 0.045  # half as much again as for congruent parts: the samples are fewer
 """Largest mean distance between them, fraction of the smaller part's diagonal."""
 _ROUGHLY = 0.1  # walls that represent solids are half a cell thicker on each side
 """Rough parts whose spreads along their principal axes differ by more are not alike, fraction of the largest."""
-REACH = 0.1  # contacts of rough meshes wander by a few percent of the part
+_REACH = 0.1  # contacts of rough meshes wander by a few percent of the part
 """Contacts that lie farther apart after the motion are not alike, fraction of the part's diagonal."""
 
 
@@ -57,7 +57,7 @@ class Outline:
 
 def outline_of(surface: PartSurface) -> Outline:
     """The outside of a part."""
-    points = surface.outline(SAMPLES).points
+    points = surface.outline(_SAMPLES).points
     return Outline(points=points, size=surface.part.diagonal, rough=surface.roughness > FACETED)
 
 
@@ -160,7 +160,7 @@ class AlikeParts:
         tree, found = cKDTree(target), []
         for part, like in zip(here, there, strict=True):
             for motion in self.motions(part, like):
-                if not np.linalg.norm(motion.points(centres[0]) - centres[1]) > REACH * self._outlines[part].size:
+                if not np.linalg.norm(motion.points(centres[0]) - centres[1]) > _REACH * self._outlines[part].size:
                     found.append((float(tree.query(motion.points(source))[0].mean()), motion))
         return sorted(found, key=lambda item: item[0])
 

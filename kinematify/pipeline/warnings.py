@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.joints.choice.congruent_joints import TwinJoints
+from kinematify.joints.choice.congruent_joints import carried
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def warnings_of(
         *floating_parts(assembly, graph, trees[0]),
         *_compound_joints(assembly, joints, graph),
         *_followed_twins(assembly, joints, bearings),
-        *unlike_twins(assembly, graph, trees[0], joints, config),
+        *unlike_twins(assembly, graph, trees[0], joints),
         *missed_linkages(assembly, graph, bearings, joints, config),
     )
 
@@ -144,11 +144,10 @@ _SAME_END, _SAME_PLACE = 0.1, 0.02  # shares of the wider range and of the part'
 
 
 def unlike_twins(
-    assembly: Assembly, graph: ContactGraph, tree: KinematicTree, joints: Sequence[JointEstimate], config: Config
+    assembly: Assembly, graph: ContactGraph, tree: KinematicTree, joints: Sequence[JointEstimate]
 ) -> list[str]:
     """Warn of congruent parts with mirrored or repeated contacts whose joints differ, and name what they differ in."""
-    twins, joint_of = TwinJoints(assembly, graph, seed=config.seed), {j.child: j for j in joints}
-    said = []
+    joint_of, said = {joint.child: joint for joint in joints}, []
     for group in graph.alike.edges(tree):
         alike = [joint_of[child] for _, child in group]
         model = max(alike, key=lambda joint: joint.confidence)
@@ -157,7 +156,7 @@ def unlike_twins(
             # What is the same as it stands needs no motion, which takes longer to find.
             if joint is not model and _difference(model, joint, math.inf):
                 size = assembly.parts[joint.child].diagonal
-                found = [_difference(item, joint, size) for item in twins.carried(model, joint)]
+                found = [_difference(item, joint, size) for item in carried(assembly, graph, model, joint)]
                 if found and all(found):
                     unlike.setdefault(found[0], []).append(assembly.names[joint.child])
         said += [
