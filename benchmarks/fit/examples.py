@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.contact.build_graph import build_contact_graph
+from kinematify.contact.graph import pair
 from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
@@ -18,7 +19,7 @@ from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypothese
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import rightness
 from kinematify.joints.choice.opening import measure_sides
-from kinematify.joints.features.edge_scene import part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import Cloud, PartCache, point_cloud
 
 if TYPE_CHECKING:
@@ -123,15 +124,14 @@ def examples_of(
     bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
     tree = KinematicTree(parents=tuple(truth.parents))
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
-    frames = part_frames(cache, tree, config.joints)
+    whole = TreeScenes(cache=cache, tree=tree, config=config.joints)
     alike = graph.alike.edges(tree)
     found = []
     for edge in tree.edges():
         joints = [joint for joint in truth.joints if (joint.parent, joint.child) == edge]
         if not joints or (broken and joints[0].kind is not JointType.FIXED and edge[1] not in lessened):
             continue
-        bearing = bearings.get((min(edge), max(edge)))
-        features = edge_features(cache, tree, frames, edge, bearing, config=config.joints)
+        features = edge_features(whole.scene(edge, bearings.get(pair(*edge))))
         hypotheses, size = features.hypotheses, features.scene.frame.diagonal
         near = cache.samples(edge[1]).points.mean(axis=0)
         judged = [_rightness(hypotheses, joint, near, size) for joint in joints]

@@ -56,7 +56,8 @@ def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) ->
     assert scene.bearing is not None
     best = scene.bearing.lines[0]
     lines = tuple(replace(best, axis=np.asarray(axis), score=score) for axis, score in axes_and_scores)
-    weak = replace(scene, has_bearing=False, bearing=replace(scene.bearing, lines=lines))
+    weak = replace(scene, fitted=replace(scene.bearing, lines=lines))
+    assert not weak.has_bearing
     return ranked_turns(weak)
 
 

@@ -85,7 +85,7 @@ def _to_learn(
     surfaces: Sequence[PartSurface],
     config: BearingConfig,
 ) -> bool:
-    clear = [_best_score(bearings[pair]) >= config.twins.clear for pair in group]
+    clear = [bearings[pair].best_score >= config.twins.clear for pair in group]
     rough = any(_roughness(surfaces, pair) > config.rough_from for pair in group)
     return rough or (any(clear) and not all(clear))
 
@@ -93,10 +93,6 @@ def _to_learn(
 def _roughness(surfaces: Sequence[PartSurface], pair: Pair) -> float:
     """Roughness of the rougher part of a contact [deg]."""
     return max(surfaces[part].roughness for part in pair)
-
-
-def _best_score(bearing: EdgeBearing) -> float:
-    return bearing.lines[0].score if bearing.lines else 0.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -118,7 +114,7 @@ def _twins_of(
     def nearness(other: Pair) -> tuple[float, ...]:
         # Rounded, so that the clearest of equally near ones is asked, whatever the order of the parts.
         apart = float(np.linalg.norm(voters[other].centroid - here.centroid)) / size
-        return round(apart, 3), -round(_best_score(voters[other].bearing), 6), float(voters[other].centroid[2])
+        return round(apart, 3), -round(voters[other].bearing.best_score, 6), float(voters[other].centroid[2])
 
     twins = []
     for other in sorted((other for other in group if other != pair), key=nearness)[:_MOST]:

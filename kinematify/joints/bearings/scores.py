@@ -262,6 +262,11 @@ class EdgeBearing:
     follows: tuple[tuple[int, int], ...] = ()
     """Contacts of congruent parts whose evidence put another line first than this contact would by itself."""
 
+    @property
+    def best_score(self) -> float:
+        """Score of the best line; 0 without one."""
+        return self.lines[0].score if self.lines else 0.0
+
 
 def scored_line(sides: Sides, line: Line, centroid: FloatArray, diagonal: float, config: BearingConfig) -> BearingLine:
     """Score a line as a bearing of a contact; its pivot is the foot of the contact centroid."""

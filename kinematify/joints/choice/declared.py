@@ -21,7 +21,7 @@ from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
 from kinematify.joints.choice.edges import edge_qualities
 from kinematify.joints.choice.judge import judge as judge_edge
 from kinematify.joints.features.columns import features_of
-from kinematify.joints.features.edge_scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.pins import find_pins
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
@@ -64,7 +64,7 @@ class JudgedAssembly:
         self.bearing = cache(partial(self._fitted, seed=seed))
         """Bearing lines of two parts, the lower index first; None where they do not touch."""
         self.cache = PartCache(assembly, self.graph, samples=config.joints.samples, seed=seed)
-        self.frames = part_frames(self.cache, tree, config.joints)
+        self.scenes = TreeScenes(cache=self.cache, tree=tree, config=config.joints)
 
     def _fitted(self, pair: Pair, seed: int) -> EdgeBearing | None:
         edge, diagonal, config = self.graph.by_pair.get(pair), self.assembly.diagonal, self.config.bearing
@@ -111,14 +111,13 @@ class JudgedJoint:
     @property
     def size(self) -> float:
         """Diagonal of the child [m]."""
-        return self.whole.frames[self.joint.child].diagonal
+        return self.whole.scenes.frames[self.joint.child].diagonal
 
     @cached_property
     def scene(self) -> JointScene:
         """The two bodies."""
-        whole, edge = self.whole, (self.joint.parent, self.joint.child)
-        bearing = whole.bearing(self._pair)
-        return joint_scene(whole.cache, whole.tree, whole.frames, edge, bearing, config=self._config)
+        edge = self.joint.parent, self.joint.child
+        return self.whole.scenes.scene(edge, self.whole.bearing(self._pair))
 
     @cached_property
     def proposed(self) -> Hypotheses:

@@ -18,7 +18,7 @@ import numpy as np
 from kinematify.joints.candidate import ELSEWHERE, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.measurements import GROUPS, MeasuredHypotheses, measure
+from kinematify.joints.features.measurements import MeasuredHypotheses, measure
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
@@ -45,8 +45,7 @@ def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Val
         Name -> value of the turn about `axis` and of that about its opposite, shape (2,).
     """
     measured = MeasuredHypotheses(scene, _both_ways(axis, pivot), sided=True)
-    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
-    return {**found, **_leads_to(measured)}
+    return {**measure(measured), **_leads_to(measured)}
 
 
 def _both_ways(axis: FloatArray, pivot: FloatArray) -> Hypotheses:
@@ -216,7 +215,7 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
-    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, _both_ways(axis, pivot))
+    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(MeasuredHypotheses(scene, _both_ways(axis, pivot)))
     columns = np.stack([turning_columns(measured, row, scorer.measurements) for row in range(2)])
     odds = float(np.sort(scorer.sums(columns)).mean()) / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import SLIDE, TURN, joined
-from kinematify.joints.features.measurements import measure_groups
+from kinematify.joints.features.measurements import MeasuredHypotheses, measure_groups
 from kinematify.joints.features.slide_cues import rank_slides
 from kinematify.joints.features.turn_cues import rank_turns
 from kinematify.joints.features.type_cues import type_cues, type_odds
@@ -77,7 +77,7 @@ def features_of(scene: JointScene, proposed: Hypotheses, config: JointsConfig, r
         scene=scene,
         hypotheses=hypotheses,
         groups={
-            **measure_groups(scene, hypotheses),
+            **measure_groups(MeasuredHypotheses(scene, hypotheses)),
             CUES: _cues(scene, turns, slides),
             VERDICTS: _verdicts(scene, turns, slides, config),
         },

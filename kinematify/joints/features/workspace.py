@@ -96,6 +96,11 @@ class PartCache:
         """Diagonal of the assembly [m]; the unit of most tolerances."""
         return self.assembly.diagonal
 
+    def corners(self, part: int) -> FloatArray:
+        """Vertices of the faces of a part, world frame [m], shape (n, 3)."""
+        mesh = self.assembly.parts[part]
+        return mesh.vertices[np.unique(mesh.faces)]
+
     def _sampled(self, part: int) -> SurfaceSamples:
         return sample_surface(self.assembly.parts[part], self._samples, self._seed)
 

@@ -164,7 +164,7 @@ def _within(scene: JointScene, part: int, other: int) -> FloatArray:
 def _centre_directions(scene: JointScene, held: FloatArray) -> list[FloatArray]:
     """Distinct axes of the whole object, the boxes of parent and child, and those across the way out of the parent."""
     away = scene.centre - held
-    found = [*scene.upright_axes, *scene.parent_frame.axes, *scene.frame.axes]
+    found = [*scene.cache.upright_axes, *scene.parent_frame.axes, *scene.frame.axes]
     for first, second in ((away, UP), (away, scene.frame.axes[scene.frame.thin])):
         across = np.cross(first, second)
         length = float(np.linalg.norm(across))
