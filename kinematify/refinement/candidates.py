@@ -72,7 +72,7 @@ class CandidateJoints:
         if self._config.method == "cavl":
             return self._paper.realise(joint, candidate)
         scene = self.scene(tree, (joint.parent, joint.child))
-        found = find_range(scene, candidate.kind, candidate.axis, candidate.pivot, self._config)
+        found = find_range(scene, candidate.kind, candidate.axis, candidate.pivot)
         return replace(
             joint,
             axis=found.sign * candidate.axis,

@@ -76,13 +76,13 @@ def scene_of(known: KnownObject, child: str) -> JointScene:
 
 def ranked_turns(scene: JointScene) -> Ranked:
     """The proposed turns of a scene, best first."""
-    proposed = propose(scene, CONFIG.joints)
+    proposed = propose(scene)
     return rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), CONFIG.joints)
 
 
 def ranked_slides(scene: JointScene) -> Ranked:
     """The proposed slides of a scene, best first."""
-    proposed = propose(scene, CONFIG.joints)
+    proposed = propose(scene)
     return rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), CONFIG.joints)
 
 

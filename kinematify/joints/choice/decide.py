@@ -81,7 +81,7 @@ def _estimate(features: Features, judged: Posterior) -> JointEstimate:
     fixed = judged.fixed > config.confidence.fixed
     kind = JointType.FIXED if fixed else judged.kind(judged.best)
     axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
-    found = find_range(scene, kind, axis, pivot, config)
+    found = find_range(scene, kind, axis, pivot)
     return JointEstimate(
         parent=scene.parent,
         child=scene.child,
@@ -110,7 +110,7 @@ def edge_features(scene: JointScene, given: Sequence[Line] = ()) -> Features:
         given: Lines to measure beside the proposals, as turns about them and as slides along them. They have no say in
             the type.
     """
-    return features_of(scene, propose(scene, scene.config, given), scene.config)
+    return features_of(scene, propose(scene, given))
 
 
 _Joint = TypeVar("_Joint", JointEstimate, JointCandidate)

@@ -122,7 +122,7 @@ class JudgedJoint:
     @cached_property
     def proposed(self) -> Hypotheses:
         """Candidates that the inference would weigh, and the declared line."""
-        return propose(self.scene, self._config, (self._line,))
+        return propose(self.scene, (self._line,))
 
     @property
     def _line(self) -> Line:
@@ -131,7 +131,7 @@ class JudgedJoint:
     @cached_property
     def features(self) -> Features:
         """What is measured of the candidates, which takes most of the time."""
-        return features_of(self.scene, self.proposed, self._config, _RIVALS)
+        return features_of(self.scene, self.proposed, _RIVALS)
 
     @cached_property
     def posterior(self) -> Posterior:

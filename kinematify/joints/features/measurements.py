@@ -284,7 +284,7 @@ def bearing(m: MeasuredHypotheses) -> _Found:
         **values,
         "bearing_best": max((line.score for line in found), default=0.0),
         "rail_best": 0.0 if rail is None else rail.score,
-        "rail_along": 0.0 if rail is None else (np.abs(h.axes @ rail.axis) > 0.999) * rail.score,
+        "rail_along": 0.0 if rail is None else np.where(np.abs(h.axes @ rail.axis) > 0.999, rail.score, 0.0),
         "rail_lead": scene.rail_lead,
         "journal": 0.0 if scene.journal is None else scene.journal.coverage,
     }

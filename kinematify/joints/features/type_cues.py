@@ -100,7 +100,7 @@ def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsC
 def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
     """Return the motions that the contact stops: a key, skirt or groove turning, a bead, barrel or fork sliding."""
     few = _near_best(scene, turns, config)
-    clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0], config)
+    clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0])
     if clearance is None:
         return {"keyed": 0.0, "retained": 0.0}
     least = config.clearance.least * scene.frame.diagonal

@@ -17,7 +17,6 @@ from kinematify.robot.vectors import lengths_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config import JointsConfig
     from kinematify.joints.bearings.line import Line
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray
@@ -31,16 +30,15 @@ Proposal = tuple["FloatArray", "FloatArray", int, str]
 """Axis, a point, place and source of a line."""
 
 
-def propose(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> Hypotheses:
+def propose(scene: JointScene, given: Sequence[Line] = ()) -> Hypotheses:
     """Fixed, then every turn, then every slide.
 
     Args:
         scene: The pair.
-        config: What counts as one line or direction.
         given: Lines from elsewhere that stand beside the proposals, as turns and as slides; their source is `GIVEN`.
     """
-    turns = [*_turns(scene, config), *((line.axis, line.point, ELSEWHERE, GIVEN) for line in given)]
-    slides = [*_slides(scene, config), *((line.axis, GIVEN) for line in given)]
+    turns = [*_turns(scene), *((line.axis, line.point, ELSEWHERE, GIVEN) for line in given)]
+    slides = [*_slides(scene), *((line.axis, GIVEN) for line in given)]
     axes = np.array([axis for axis, _, _, _ in turns])
     pivots = np.array([pivot for _, pivot, _, _ in turns])
     pivots = pivots + np.einsum("cd,cd->c", scene.anchor - pivots, axes)[:, None] * axes
@@ -54,7 +52,7 @@ def propose(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ())
     )
 
 
-def _turns(scene: JointScene, config: JointsConfig) -> list[Proposal]:
+def _turns(scene: JointScene) -> list[Proposal]:
     """Bearing lines, lines through the contact, nine lines per direction of the slab's box, lines through centres."""
     found: list[Proposal] = []
     if scene.bearing is not None:
@@ -63,16 +61,16 @@ def _turns(scene: JointScene, config: JointsConfig) -> list[Proposal]:
         ]
         found += [
             (line.axis, line.pivot, ELSEWHERE, "weak_bearing")
-            for line in scene.bearing.lines[int(scene.has_bearing) : config.panels.bearings]
+            for line in scene.bearing.lines[int(scene.has_bearing) : scene.config.panels.bearings]
         ]
-    found += _contact_lines(scene, config)
+    found += _contact_lines(scene)
     if scene.fold is not None:
         found.append((scene.fold.axis, scene.fold.point, ELSEWHERE, "fold"))
     found += _box_lines(scene)
     return found + _distinct(scene, centre_lines(scene), found)
 
 
-def _slides(scene: JointScene, config: JointsConfig) -> list[tuple[FloatArray, str]]:
+def _slides(scene: JointScene) -> list[tuple[FloatArray, str]]:
     """Distinct directions: rail, bearing, the child's box, the parent's box."""
     found: list[tuple[FloatArray, str]] = []
     if scene.bearing is not None and scene.bearing.rail is not None and scene.mechanism > 0:
@@ -81,7 +79,7 @@ def _slides(scene: JointScene, config: JointsConfig) -> list[tuple[FloatArray, s
         found.append((scene.bearing.lines[0].axis, "bearing"))
     found += [(axis, "box") for axis in scene.frame.axes]
     found += [(axis, "parent_box") for axis in scene.parent_frame.axes]
-    return [found[k] for k in distinct_axes([axis for axis, _ in found], config.slides.distinct_deg)]
+    return [found[k] for k in distinct_axes([axis for axis, _ in found], scene.config.slides.distinct_deg)]
 
 
 def distinct_axes(axes: Sequence[FloatArray], angle: float) -> list[int]:
@@ -125,10 +123,10 @@ def _box_lines(scene: JointScene) -> list[Proposal]:
     return found
 
 
-def _contact_lines(scene: JointScene, config: JointsConfig) -> list[Proposal]:
+def _contact_lines(scene: JointScene) -> list[Proposal]:
     """The direction that most of a small contact faces, and the long direction of the contact."""
     contact = scene.contact
-    if len(contact.points) < config.panels.least_contact:
+    if len(contact.points) < scene.config.panels.least_contact:
         return []
     values, vectors = contact.spread
     found = []
