@@ -66,7 +66,7 @@ class Example:
     by_cues: int
     """Position of what the weighted cues alone would choose."""
     alike: int
-    """The same number for edges of an object that are alike (`AlikeParts.edges`), -1 for all others."""
+    """The same number for edges of an object that are alike (`AlikeParts.edges`)."""
     broken: bool = False
     """The object has pieces broken off; such edges teach what is fixed, not which joint is right."""
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
@@ -124,7 +124,7 @@ def examples_of(
     bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
     tree = KinematicTree(parents=tuple(truth.parents))
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
-    whole = TreeScenes(cache=cache, tree=tree, config=config.joints)
+    whole = TreeScenes(cache, tree, config.joints)
     alike = graph.alike.edges(tree)
     found = []
     for edge in tree.edges():
@@ -154,7 +154,7 @@ def examples_of(
                 types_right=same.astype(np.int64),
                 cloud=point_cloud(cache, *edge, features.scene.others, size),
                 by_cues=features.by_cues,
-                alike=next((number for number, group in enumerate(alike) if edge in group), -1),
+                alike=next(number for number, group in enumerate(alike) if edge in group),
                 broken=broken,
                 sides={} if broken else _sides(features.scene, joints[0]),
                 is_continuous=joints[0].upper - joints[0].lower > _WHOLE_TURN if joints[0].kind.turns else None,

@@ -107,7 +107,7 @@ class AlikeParts:
         return tuple(other for other in np.flatnonzero(self.kind == self.kind[part]).tolist() if other != part)
 
     def edges(self, tree: KinematicTree) -> list[list[tuple[int, int]]]:
-        """Edges (parent, child) whose children are congruent, on one parent or on congruent ones, in groups of two up.
+        """All edges (parent, child) in groups whose children are congruent, and on one parent or on congruent ones.
 
         Args:
             tree: Parent of every part.
@@ -115,7 +115,7 @@ class AlikeParts:
         groups: dict[tuple[int, ...], list[tuple[int, int]]] = {}
         for edge in tree.edges():
             groups.setdefault(tuple(self.kind[list(edge)].tolist()), []).append(edge)
-        return [group for group in groups.values() if len(group) > 1]
+        return list(groups.values())
 
     @cached_property
     def roughly(self) -> IntArray:

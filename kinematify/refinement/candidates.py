@@ -85,9 +85,9 @@ class CandidateJoints:
         """All that is known of one tree edge before a joint is proposed."""
         key = (tree.parents, edge[1])
         if key not in self._scenes:
-            new = TreeScenes(cache=self._cache, tree=tree, config=self._config)
-            whole = self._wholes.setdefault(tree.parents, new)
-            self._scenes[key] = whole.scene(edge, self._bearings.get(pair(*edge)))
+            if tree.parents not in self._wholes:
+                self._wholes[tree.parents] = TreeScenes(self._cache, tree, self._config)
+            self._scenes[key] = self._wholes[tree.parents].scene(edge, self._bearings.get(pair(*edge)))
         return self._scenes[key]
 
     def score(self, tree: KinematicTree, joint: JointEstimate) -> float:

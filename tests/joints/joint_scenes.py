@@ -71,7 +71,7 @@ def scene_of(known: KnownObject, child: str) -> JointScene:
     cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
     index = known.index[child]
     edge = (tree.parents[index], index)
-    return TreeScenes(cache=cache, tree=tree, config=CONFIG.joints).scene(edge, bearings.get(pair(*edge)))
+    return TreeScenes(cache, tree, CONFIG.joints).scene(edge, bearings.get(pair(*edge)))
 
 
 def ranked_turns(scene: JointScene) -> Ranked:

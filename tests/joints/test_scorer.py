@@ -28,9 +28,7 @@ def first_features(name: str) -> Features:
     tree, graph, bearings = evidence(known)
     cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
     edge = next(iter(tree.edges()))
-    return edge_features(
-        TreeScenes(cache=cache, tree=tree, config=CONFIG.joints).scene(edge, bearings.get(pair(*edge)))
-    )
+    return edge_features(TreeScenes(cache, tree, CONFIG.joints).scene(edge, bearings.get(pair(*edge))))
 
 
 def cloud_of(features: Features) -> Cloud:

@@ -58,7 +58,7 @@ def estimate_joints(
         One estimate per edge, in the order of `tree.edges()`.
     """
     cache = PartCache(assembly, graph, samples=config.samples, seed=seed)
-    whole = TreeScenes(cache=cache, tree=tree, config=config)
+    whole = TreeScenes(cache, tree, config)
 
     def joints_of(group: Sequence[tuple[int, int]]) -> list[JointEstimate]:
         found = [edge_features(whole.scene(edge, bearings.get(pair(*edge)))) for edge in group]
@@ -69,10 +69,8 @@ def estimate_joints(
             judged = [replace(item, prior=given, fixed=fixed) for item, given in zip(judged, likely, strict=True)]
         return [with_exact_lines(assembly, _estimate(*item)) for item in zip(found, judged, strict=True)]
 
-    groups = graph.alike.edges(tree)
-    together = {edge for group in groups for edge in group}
-    groups += [[edge] for edge in tree.edges() if edge not in together]
-    estimates = {(joint.parent, joint.child): joint for joints in each(joints_of, groups) for joint in joints}
+    found = each(joints_of, graph.alike.edges(tree))
+    estimates = {(joint.parent, joint.child): joint for joints in found for joint in joints}
     return tuple(estimates[edge] for edge in tree.edges())
 
 

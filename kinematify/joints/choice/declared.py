@@ -64,7 +64,7 @@ class JudgedAssembly:
         self.bearing = cache(partial(self._fitted, seed=seed))
         """Bearing lines of two parts, the lower index first; None where they do not touch."""
         self.cache = PartCache(assembly, self.graph, samples=config.joints.samples, seed=seed)
-        self.scenes = TreeScenes(cache=self.cache, tree=tree, config=config.joints)
+        self.scenes = TreeScenes(self.cache, tree, config.joints)
 
     def _fitted(self, pair: Pair, seed: int) -> EdgeBearing | None:
         edge, diagonal, config = self.graph.by_pair.get(pair), self.assembly.diagonal, self.config.bearing

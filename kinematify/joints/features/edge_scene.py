@@ -81,25 +81,25 @@ class Handle:
     """Unit direction of a long handle, zero for a short one, shape (3,)."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class TreeScenes:
     """A tree of parts, and what all scenes of its edges share."""
 
-    cache: PartCache
-    tree: KinematicTree
-    config: JointsConfig
+    def __init__(self, cache: PartCache, tree: KinematicTree, config: JointsConfig) -> None:
+        """Find the box frames of the parts.
 
-    @cached_property
-    def frames(self) -> dict[int, BoxFrame]:
-        """Box frame of every part, parents before children; the root prefers the upright frame of the body."""
-        cache, tree = self.cache, self.tree
+        Args:
+            cache: The parts.
+            tree: Parent of every part.
+            config: Weights and thresholds.
+        """
+        self.cache, self.tree, self.config = cache, tree, config
         root = cache.samples(tree.root)
         body = body_axes(root.normals, root.areas)
-        frames: dict[int, BoxFrame] = {}
+        self.frames: dict[int, BoxFrame] = {}
+        """Box frame of every part; that of the root prefers the upright frame of the body, others their parent's."""
         for part, above in [(tree.root, -1), *((child, parent) for parent, child in tree.edges())]:
-            preferred = [body] if above < 0 else [frames[above].axes, body]
-            frames[part] = box_frame(cache.corners(part), cache.samples(part), preferred, self.config.frames)
-        return frames
+            preferred = [body] if above < 0 else [self.frames[above].axes, body]
+            self.frames[part] = box_frame(cache.corners(part), cache.samples(part), preferred, config.frames)
 
     def scene(self, edge: tuple[int, int], bearing: EdgeBearing | None) -> JointScene:
         """The edge (parent, child), whose contact has a bearing."""
