@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.bearings.line import Line, Lines
+from kinematify.joints.bearings.line import Line, Lines, lines_of
 from kinematify.joints.bearings.scores import OCTAGON, across_axes
 from kinematify.robot.vectors import lengths_of
 
@@ -72,8 +72,7 @@ def refine_lines(
 
 def refine_line(sides: Sides, line: Line, tolerances: FloatArray, config: BearingConfig) -> Line:
     """`refine_lines` of a single line."""
-    lines = Lines(axes=line.axis[None], points=line.point[None])
-    return refine_lines(sides, lines, tolerances, config)[0]
+    return refine_lines(sides, lines_of([line]), tolerances, config)[0]
 
 
 def sample_spread(sides: Sides) -> float:

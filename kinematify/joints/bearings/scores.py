@@ -145,7 +145,7 @@ def surface_support(side: BearingSide, lines: Lines, config: BearingConfig) -> F
 
 def line_support(side: BearingSide, line: Line, config: BearingConfig) -> float:
     """`surface_support` of a single line."""
-    return float(surface_support(side, Lines(axes=line.axis[None], points=line.point[None]), config)[0])
+    return float(surface_support(side, lines_of([line]), config)[0])
 
 
 def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> FloatArray:
@@ -167,10 +167,10 @@ def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> Fl
 
 
 def across_axes(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two unit vectors across each axis, shapes (L, 3)."""
+    """Two unit vectors across each axis, shapes (L, 3); zero where that is zero."""
     helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
     first = crossed(axes, helper)
-    first /= lengths_of(first)[:, None]
+    first /= np.maximum(lengths_of(first), 1e-12)[:, None]
     return first, crossed(axes, first)
 
 
@@ -270,7 +270,7 @@ class EdgeBearing:
 
 def scored_line(sides: Sides, line: Line, centroid: FloatArray, diagonal: float, config: BearingConfig) -> BearingLine:
     """Score a line as a bearing of a contact; its pivot is the foot of the contact centroid."""
-    return scored_lines(sides, Lines(axes=line.axis[None], points=line.point[None]), centroid, diagonal, config)[0]
+    return scored_lines(sides, lines_of([line]), centroid, diagonal, config)[0]
 
 
 def scored_lines(

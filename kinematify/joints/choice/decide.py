@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.contact.graph import pair
 from kinematify.joints.bearings.line import Line
-from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate, JointLine, JointType
 from kinematify.joints.choice.judge import agreed, judge
 from kinematify.joints.choice.limits import find_range
 from kinematify.joints.features.columns import features_of
@@ -111,7 +111,7 @@ def edge_features(scene: JointScene, given: Sequence[Line] = ()) -> Features:
     return features_of(scene, propose(scene, given))
 
 
-_Joint = TypeVar("_Joint", JointEstimate, JointCandidate)
+_Joint = TypeVar("_Joint", bound=JointLine)
 _NEAR = np.radians(1.0)
 """A fitted direction within this angle of an exact one means it [rad]."""
 _BESIDE = 5e-3

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.build_graph import build_contact_graph
+from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_edge, score_line
@@ -102,7 +103,7 @@ class JudgedJoint:
 
     @property
     def _pair(self) -> Pair:
-        return _pair(self.joint.parent, self.joint.child)
+        return pair(self.joint.parent, self.joint.child)
 
     @property
     def _config(self) -> JointsConfig:
@@ -282,7 +283,7 @@ def _parent_evidence(whole: JudgedAssembly, joint: TrueJoint) -> ParentEvidence:
     compared = (*others, joint.parent) if others else ()  # qualities take a tenth of the stage
     quality = {body: _quality(whole, joint.child, body) for body in compared}
     best = max(others, key=lambda body: quality[body], default=None)
-    edge = whole.graph.by_pair.get(_pair(joint.child, joint.parent))
+    edge = whole.graph.by_pair.get(pair(joint.child, joint.parent))
     return ParentEvidence(
         touches=edge is not None and not edge.bridge,
         quality=quality.get(joint.parent, 0.0),
@@ -292,14 +293,10 @@ def _parent_evidence(whole: JudgedAssembly, joint: TrueJoint) -> ParentEvidence:
 
 
 def _quality(whole: JudgedAssembly, child: int, body: int) -> float:
-    edge = whole.graph.by_pair.get(_pair(child, body))
+    edge = whole.graph.by_pair.get(pair(child, body))
     if edge is None or edge.bridge:
         return 0.0
-    return whole.qualities[_pair(child, body)]
-
-
-def _pair(first: int, second: int) -> Pair:
-    return min(first, second), max(first, second)
+    return whole.qualities[pair(child, body)]
 
 
 def _given(every: Hypotheses) -> BoolArray:

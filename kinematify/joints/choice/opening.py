@@ -216,15 +216,8 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
         return False
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
     scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(MeasuredHypotheses(scene, _both_ways(axis, pivot)))
-    columns = np.stack([turning_columns(measured, row, scorer.measurements) for row in range(2)])
-    odds = float(np.sort(scorer.sums(columns)).mean()) / scorer.temperature
+    odds = float(np.sort(scorer.sums(columns_of(measured, scorer.measurements, 2))).mean()) / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
-
-
-def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
-    """Return what the trees read of one hypothesis, shape (n,)."""
-    known = {name: measured[name][row : row + 1] for name in names if name in measured}
-    return np.asarray(columns_of(known, names, 1)[0])
 
 
 def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:

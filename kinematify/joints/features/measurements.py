@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
+from kinematify.joints.bearings.scores import across_axes
 from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.features.frames import UP
 from kinematify.robot.vectors import crossed, lengths_of
@@ -486,18 +487,10 @@ def _sectors(m: MeasuredHypotheses, points: FloatArray) -> tuple[IntArray, Float
 
     No sector starts where outlines of boxes and prisms have their corners.
     """
-    first, second = _across_pair(m.hypotheses.axes)
+    first, second = across_axes(m.hypotheses.axes)
     offset = points[None] - m.hypotheses.pivots[:, None]
     x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
     return ((np.arctan2(y, x) + _FIRST_SECTOR) / (2.0 * np.pi) * 12).astype(np.int64) % 12, np.hypot(x, y)
-
-
-def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two unit directions across each axis and each other, shape (h, 3) each."""
-    helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
-    first = np.cross(axes, helper)
-    first /= np.maximum(lengths_of(first), _TINY)[:, None]
-    return first, np.cross(axes, first)
 
 
 def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> FloatArray:
@@ -608,7 +601,7 @@ def hollow(m: MeasuredHypotheses) -> _Found:
         starts = np.broadcast_to(scene.centre, directions.shape)
         return np.isfinite(scene.cache.first_hits(scene.child, starts, reach * directions)).astype(np.float64)
 
-    first, second = _across_pair(h.axes)
+    first, second = across_axes(h.axes)
     forward = np.where(m.better == 0, 1.0, -1.0)[:, None] * h.axes
     moves = (h.kinds != FIXED)[:, None]
     around = [met(np.where(moves, sign * axis, UP)) for axis in (first, second) for sign in (1.0, -1.0)]
