@@ -8,7 +8,7 @@ is therefore carried over to its twins, along the motion that lays one limb upon
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -195,9 +195,10 @@ def _opinion(twin: _Twin, line: Line) -> BearingLine:
 
 
 def _mean(mine: BearingLine, others: Sequence[BearingLine]) -> BearingLine:
-    everyone, names = [mine, *others], ("score", "surface_a", "surface_b", "circles_a", "circles_b")
-    means: dict[str, Any] = {name: float(np.mean([getattr(line, name) for line in everyone])) for name in names}
-    return replace(mine, **means)
+    everyone = [mine, *others]
+    score = float(np.mean([line.score for line in everyone]))
+    surfaces, rings = np.mean([(line.surfaces, line.rings) for line in everyone], axis=0).tolist()
+    return replace(mine, score=score, surfaces=tuple(surfaces), rings=tuple(rings))
 
 
 def same_line(one: BearingLine, other: BearingLine, diagonal: float, config: BearingConfig) -> bool:

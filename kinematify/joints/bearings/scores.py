@@ -217,10 +217,10 @@ class BearingLine:
     """Point of the line nearest to the contact centroid, world frame [m], shape (3,). Read-only."""
     score: float
     """Combined support; comparable among edges of one assembly."""
-    surface_a: float
-    surface_b: float
-    circles_a: float
-    circles_b: float
+    surfaces: tuple[float, ...]
+    """Share of either part's area that turns into itself about it."""
+    rings: tuple[float, ...]
+    """The same of its circular edges."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axis", read_only(self.axis, np.float64))
@@ -234,19 +234,17 @@ class BearingLine:
     @property
     def exchanged(self) -> BearingLine:
         """The same line with its support on either part exchanged."""
-        return replace(
-            self, surface_a=self.surface_b, surface_b=self.surface_a, circles_a=self.circles_b, circles_b=self.circles_a
-        )
+        return replace(self, surfaces=self.surfaces[::-1], rings=self.rings[::-1])
 
     @property
     def surface(self) -> float:
         """Geometric mean of the revolution support of both parts (F of feasibility.md section 4)."""
-        return float(np.sqrt(self.surface_a * self.surface_b))
+        return float(np.sqrt(np.prod(self.surfaces)))
 
     @property
     def circles(self) -> float:
         """Geometric mean of the circle support of both parts (CS of feasibility.md section 4)."""
-        return float(np.sqrt(self.circles_a * self.circles_b))
+        return float(np.sqrt(np.prod(self.rings)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -277,23 +275,14 @@ def scored_lines(
     sides: Sides, lines: Lines, centroid: FloatArray, diagonal: float, config: BearingConfig
 ) -> list[BearingLine]:
     """`scored_line` of each of many lines."""
-    surface_a, surface_b = (surface_support(side, lines, config).tolist() for side in sides)
+    supports = [surface_support(side, lines, config).tolist() for side in sides]
     scored = []
-    for index, line in enumerate(lines):
-        circles_a, circles_b = (circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
-        support = np.sqrt(surface_a[index] * surface_b[index])
-        score = float(support * (config.circle_floor + np.sqrt(circles_a * circles_b)) / (config.circle_floor + 1))
-        scored.append(
-            BearingLine(
-                axis=line.axis,
-                pivot=line.foot(centroid),
-                score=score,
-                surface_a=surface_a[index],
-                surface_b=surface_b[index],
-                circles_a=circles_a,
-                circles_b=circles_b,
-            )
-        )
+    for line, surfaces in zip(lines, zip(*supports, strict=True), strict=True):
+        rings = tuple(circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
+        floor = config.circle_floor
+        score = float(np.sqrt(np.prod(surfaces)) * (floor + np.sqrt(np.prod(rings))) / (floor + 1))
+        found = BearingLine(axis=line.axis, pivot=line.foot(centroid), score=score, surfaces=surfaces, rings=rings)
+        scored.append(found)
     return scored
 
 

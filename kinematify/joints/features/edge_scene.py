@@ -433,10 +433,8 @@ def _with_journal(bearing: EdgeBearing | None, scene: JointScene, journal: Journ
         axis=journal.axis,
         pivot=journal.pivot,
         score=max((line.score for line in lines), default=0.0) + journal.coverage,
-        surface_a=journal.coverage,
-        surface_b=journal.coverage,
-        circles_a=journal.coverage,
-        circles_b=journal.coverage,
+        surfaces=(journal.coverage, journal.coverage),
+        rings=(journal.coverage, journal.coverage),
     )
     a, b = pair(scene.parent, scene.child)
     return EdgeBearing(

@@ -274,8 +274,8 @@ def bearing(m: MeasuredHypotheses) -> _Found:
             same * line.score,
             same * line.surface,
             same * line.circles,
-            same * min(line.surface_a, line.surface_b),
-            same * min(line.circles_a, line.circles_b),
+            same * min(line.surfaces),
+            same * min(line.rings),
             line.score * (cosine > 0.999),
         )
         for name, number in zip(values, numbers, strict=True):
