@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.edge_evidence import EdgeEvidence
+    from kinematify.topology.edge_evidence import TreeEvidence
 
 EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""
@@ -173,7 +173,7 @@ class TreeReward:
         self,
         graph: ContactGraph,
         stats: Sequence[PartStats],
-        evidence: Mapping[Pair, EdgeEvidence],
+        evidence: TreeEvidence,
         config: TopologyConfig,
         simulated: SimulatedEdges | None = None,
     ) -> None:
@@ -182,7 +182,7 @@ class TreeReward:
         Args:
             graph: Contacts and clusters.
             stats: Size and place of every part.
-            evidence: Best joint of each contact edge, keyed (a, b) with a < b.
+            evidence: Of the contact edges.
             config: Weights of the terms.
             simulated: What a simulation had against edges, if there was one; adds R_sim and weakens these edges.
 
@@ -208,14 +208,13 @@ class TreeReward:
         self.quality = self.edge_quality()
         if simulated is not None:
             self.quality = {edge: value * simulated.of_pair(edge) for edge, value in self.quality.items()}
-        self.stacks = {edge: item.carriers for edge, item in evidence.items() if item.carriers}
         self.edge_weights = np.zeros((graph.n_parts, graph.n_parts))
         for (a, b), value in self.quality.items():
             self.edge_weights[a, b] = self.edge_weights[b, a] = value
 
     def edge_quality(self) -> dict[Pair, float]:
         """Weight of every contact edge in [0, 1], before what a simulation had against it; 0 without evidence."""
-        return {pair: self.evidence[pair].quality if pair in self.evidence else 0.0 for pair in self.graph.by_pair}
+        return {pair: self.evidence.quality.get(pair, 0.0) for pair in self.graph.by_pair}
 
     @cached_property
     def likely(self) -> dict[Pair, float]:
@@ -248,7 +247,7 @@ class TreeReward:
             "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.alike.kind),
             "hier": log_hierarchy(tree, self.hulls),
             "base": base_score,
-            "stack": side_by_side(tree, self.stacks),
+            "stack": side_by_side(tree, self.evidence.carriers),
         }
 
     def _survived(self, tree: TreeLayout) -> float:

@@ -8,8 +8,7 @@ import pytest
 from kinematify.config import load_config
 from kinematify.paper.trees import PaperReward, hierarchy, symmetry
 from kinematify.topology import reward as terms
-from kinematify.topology.edge_evidence import EdgeEvidence
-from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
+from tests.topology.topology_objects import edge, evidence_of, graph_of, random_assembly, stat
 
 CONFIG = load_config().topology
 PAPER = load_config("paper").topology
@@ -65,9 +64,8 @@ def test_total_is_the_weighted_mean() -> None:
 def test_shafts_that_pass_each_other_hang_side_by_side(passing: bool) -> None:
     graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0})
     stats = [stat((0, 0, 0), 2.0), stat((0, 0, 1)), stat((0, 0, 2), 0.5)]
-    evidence = {key: EdgeEvidence(quality=0.9, axis=None) for key in graph.by_pair}
-    if passing:
-        evidence[1, 2] = EdgeEvidence(quality=0.9, axis=None, carriers=frozenset({0}))
+    carriers = {(1, 2): frozenset({0})} if passing else {}
+    evidence = evidence_of(dict.fromkeys(graph.by_pair, (0.9, None)), carriers)
     reward = terms.TreeReward(graph, stats, evidence, CONFIG)
     chain, star = (reward.terms(parents)["stack"] for parents in ((-1, 0, 1), (-1, 0, 0)))
     assert star == 1.0
