@@ -280,7 +280,7 @@ def bearing(m: MeasuredHypotheses) -> _Found:
         )
         for name, number in zip(values, numbers, strict=True):
             values[name] = np.maximum(values[name], number)
-    rail = scene.bearing.rail if scene.bearing is not None else None
+    rail = scene.rail
     return {
         **values,
         "bearing_best": max((line.score for line in found), default=0.0),

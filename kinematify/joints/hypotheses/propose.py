@@ -42,12 +42,12 @@ def propose(scene: JointScene, given: Sequence[Line] = ()) -> Hypotheses:
     axes = np.array([axis for axis, _, _, _ in turns])
     pivots = np.array([pivot for _, pivot, _, _ in turns])
     pivots = pivots + np.einsum("cd,cd->c", scene.anchor - pivots, axes)[:, None] * axes
-    beside = 1 + len(slides)
+    count = len(slides)
     return Hypotheses(
-        kinds=np.array([FIXED] + [TURN] * len(turns) + [SLIDE] * len(slides)),
+        kinds=np.array([FIXED] + [TURN] * len(turns) + [SLIDE] * count),
         axes=np.concatenate([np.zeros((1, 3)), axes, np.array([axis for axis, _ in slides])]),
-        pivots=np.concatenate([scene.anchor[None], pivots, np.tile(scene.anchor, (len(slides), 1))]),
-        places=np.array([ELSEWHERE, *(place for _, _, place, _ in turns), *[ELSEWHERE] * (beside - 1)]),
+        pivots=np.concatenate([scene.anchor[None], pivots, np.tile(scene.anchor, (count, 1))]),
+        places=np.array([ELSEWHERE, *(place for _, _, place, _ in turns), *[ELSEWHERE] * count]),
         sources=("fixed", *(source for _, _, _, source in turns), *(source for _, source in slides)),
     )
 
@@ -56,13 +56,9 @@ def _turns(scene: JointScene) -> list[Proposal]:
     """Bearing lines, lines through the contact, nine lines per direction of the slab's box, lines through centres."""
     found: list[Proposal] = []
     if scene.bearing is not None:
-        found += [
-            (line.axis, line.pivot, ELSEWHERE, "bearing") for line in scene.bearing.lines[:1] if scene.has_bearing
-        ]
-        found += [
-            (line.axis, line.pivot, ELSEWHERE, "weak_bearing")
-            for line in scene.bearing.lines[int(scene.has_bearing) : scene.config.panels.bearings]
-        ]
+        for line in scene.bearing.lines[: scene.config.panels.bearings]:
+            beyond_doubt = scene.has_bearing and not found
+            found.append((line.axis, line.pivot, ELSEWHERE, "bearing" if beyond_doubt else "weak_bearing"))
     found += _contact_lines(scene)
     if scene.fold is not None:
         found.append((scene.fold.axis, scene.fold.point, ELSEWHERE, "fold"))
@@ -73,8 +69,8 @@ def _turns(scene: JointScene) -> list[Proposal]:
 def _slides(scene: JointScene) -> list[tuple[FloatArray, str]]:
     """Distinct directions: rail, bearing, the child's box, the parent's box."""
     found: list[tuple[FloatArray, str]] = []
-    if scene.bearing is not None and scene.bearing.rail is not None and scene.mechanism > 0:
-        found.append((scene.bearing.rail.axis, "rail"))
+    if scene.rail is not None and scene.mechanism > 0:
+        found.append((scene.rail.axis, "rail"))
     if scene.bearing is not None and scene.bearing.lines and scene.has_bearing:
         found.append((scene.bearing.lines[0].axis, "bearing"))
     found += [(axis, "box") for axis in scene.frame.axes]
