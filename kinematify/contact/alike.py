@@ -72,11 +72,11 @@ class RigidMotion:
 
     def points(self, points: FloatArray) -> FloatArray:
         """Where points go, shape (n, 3) or (3,)."""
-        return np.asarray(points @ self.turn.T + self.shift)
+        return points @ self.turn.T + self.shift
 
     def directions(self, directions: FloatArray) -> FloatArray:
         """Where directions go, shape (n, 3) or (3,)."""
-        return np.asarray(directions @ self.turn.T)
+        return directions @ self.turn.T
 
     @property
     def inverse(self) -> RigidMotion:

@@ -155,4 +155,4 @@ def _seen_from(lines: Lines, frames: FloatArray, points: FloatArray) -> FloatArr
 def _turned_into(frames: FloatArray, vectors: FloatArray) -> FloatArray:
     """Coordinates of vectors (n, 3) along the axes of each frame, shape (3, L, n)."""
     flat = frames.transpose(1, 0, 2).reshape(-1, 3) @ vectors.T
-    return np.asarray(flat.reshape(3, len(frames), len(vectors)))
+    return flat.reshape(3, len(frames), len(vectors))

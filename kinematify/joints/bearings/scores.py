@@ -63,14 +63,14 @@ def _cross_directions(side: BearingSide, count: int, rng: np.random.Generator) -
     cross = crossed(side.normals[first], side.normals[second])
     sine = lengths_of(cross)
     good = sine > 0.3  # about 17 deg; nearly parallel normals leave the direction open
-    return np.asarray(cross[good] / sine[good, None])
+    return cross[good] / sine[good, None]
 
 
 def _score(sides: Sides, axes: FloatArray, config: RailConfig) -> FloatArray:
     area = [_extruded_area(side, axes, config) for side in sides]
     edges = [_guiding_edges(side, axes, config) for side in sides]
     guided = (config.edge_floor + np.sqrt(edges[0] * edges[1])) / (config.edge_floor + 1)
-    return np.asarray(np.sqrt(area[0] * area[1]) * guided)
+    return np.sqrt(area[0] * area[1]) * guided
 
 
 def _extruded_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> FloatArray:
@@ -90,7 +90,7 @@ def _block_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> Floa
     for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):  # equal directions keep equal digits
         moments[:, i, j] = moments[:, j, i] = (fit * (side.normals[:, i] * side.normals[:, j])[:, None]).sum(axis=0)
     # The normals that count are across the axis, so the smallest of the three eigenvalues belongs to the axis itself.
-    return np.asarray(np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0))
+    return np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0)
 
 
 def _guiding_edges(side: BearingSide, axes: FloatArray, config: RailConfig) -> FloatArray:

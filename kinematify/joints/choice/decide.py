@@ -153,4 +153,4 @@ def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
 
 def _angles(directions: FloatArray, axis: FloatArray) -> FloatArray:
     """Between lines, shape (n,) [rad]; by the sine, since cosines near 1 are blunt."""
-    return np.asarray(np.arcsin(np.clip(lengths_of(np.cross(directions, axis)), 0.0, 1.0)))
+    return np.arcsin(np.clip(lengths_of(np.cross(directions, axis)), 0.0, 1.0))

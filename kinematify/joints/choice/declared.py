@@ -208,7 +208,7 @@ class JudgedJoint:
     def _away(self, every: Hypotheses) -> FloatArray:
         """Distances of candidates from the declared line, fractions of the child's diagonal, shape (h,)."""
         beside = lengths_of(crossed(every.pivots - self.joint.pivot, self.joint.axis))
-        return np.asarray((not self.slides) * beside / self.size)
+        return (not self.slides) * beside / self.size
 
     @cached_property
     def best(self) -> int:

@@ -151,7 +151,7 @@ def rightness(degrees: FloatArray, apart: FloatArray) -> FloatArray:
         degrees: Angle between its direction and the true one [deg].
         apart: Distance of its line from the true one, in diagonals of the child; 0 for slides. Same shape.
     """
-    return np.asarray(np.exp(-((degrees / _ANGLE) ** 2) - (apart / _DISTANCE) ** 2))
+    return np.exp(-((degrees / _ANGLE) ** 2) - (apart / _DISTANCE) ** 2)
 
 
 def judge(features: Features, config: ConfidenceConfig) -> Posterior:

@@ -81,7 +81,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
 def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
     """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
     velocity = m.velocity(point[None])[:, 0]
-    return np.asarray(velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None])
+    return velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None]
 
 
 # ---- conventions ---------------------------------------------------------------------------------------------------

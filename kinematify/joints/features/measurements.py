@@ -101,7 +101,7 @@ class MeasuredHypotheses:
     def radii(self, points: FloatArray) -> FloatArray:
         """Distances of points (n, 3) from each line [m], shape (h, n)."""
         h = self.hypotheses
-        return np.asarray(lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None])))
+        return lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None]))
 
     def velocity(self, points: FloatArray) -> FloatArray:
         """First motion of points (n, 3) by each hypothesis, shape (h, n, 3); zero for fixed."""

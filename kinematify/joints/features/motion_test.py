@@ -211,9 +211,7 @@ def _followed(scene: JointScene) -> FloatArray | None:
     if len(contact.points) < scene.config.clearance.least_samples:
         return None
     stride = max(1, len(contact.points) // scene.config.clearance.samples)
-    return np.asarray(
-        (contact.points - scene.config.clearance.inset * scene.frame.diagonal * contact.normals)[::stride]
-    )
+    return (contact.points - scene.config.clearance.inset * scene.frame.diagonal * contact.normals)[::stride]
 
 
 def _strict(config: JointsConfig) -> SweepConfig:

@@ -49,7 +49,7 @@ class ContactView:
         """Area-weighted centre of the contact in the world frame [m], shape (3,); NaN without contact."""
         if len(self.points) == 0:
             return np.full(3, np.nan)
-        return np.asarray(self.weights @ self.points)
+        return self.weights @ self.points
 
     @cached_property
     def spread(self) -> tuple[FloatArray, FloatArray]:
@@ -172,7 +172,7 @@ class PartCache:
             off = np.abs(self._solid(part).numbers(points[near], accuracy)) - 0.5
             result[near] = off > 0.0
             near = near[np.abs(off) < clear]
-        return np.asarray(result)
+        return result
 
     def inside_any(self, parts: Sequence[int], points: FloatArray) -> BoolArray:
         """Test whether points (n, 3) in the world frame lie inside the solid of one of some parts, shape (n,)."""
