@@ -65,11 +65,11 @@ def held_journal(cache: PartCache, parent: int, child: int, size: float, config:
     edge = cache.graph.by_pair.get(pair(parent, child))
     if edge is None:
         return None
-    facing = _facing_faces(cache, parent, child, edge.gap + config.contact_band * cache.diagonal, config.journal)
+    facing = facing_faces(cache, parent, child, edge.gap + config.contact_band * cache.diagonal, config.journal)
     return find_journal(facing, size, config.journal)
 
 
-def _facing_faces(cache: PartCache, parent: int, child: int, reach: float, config: JournalConfig) -> Facing:
+def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config: JournalConfig) -> Facing:
     """Faces of the child whose nearest surface of the parent lies straight before them and looks back.
 
     Normals may point either way: many meshes are not oriented.
