@@ -20,9 +20,9 @@ from kinematify.joints.candidate import JointCandidate
 from kinematify.joints.choice.congruent_joints import carried
 from kinematify.pipeline.stages import choose_joints, tree_reward, with_doubt_of_parents
 from kinematify.pipeline.warnings import floating_parts, unlike_twins
+from kinematify.refinement.arborescence import tree_with_parents
 from kinematify.refinement.candidates import CandidateJoints, described
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.arborescence import tree_with_parents
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
