@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.joints.choice.congruent_joints import carried
+from kinematify.pipeline.congruent_joints import carried
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

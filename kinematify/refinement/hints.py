@@ -17,7 +17,7 @@ import numpy as np
 from kinematify.contact.graph import pair
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
-from kinematify.joints.choice.congruent_joints import carried
+from kinematify.pipeline.congruent_joints import carried
 from kinematify.pipeline.stages import choose_joints, tree_reward, with_doubt_of_parents
 from kinematify.pipeline.warnings import floating_parts, unlike_twins
 from kinematify.refinement.arborescence import tree_with_parents
