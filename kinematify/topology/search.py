@@ -424,16 +424,17 @@ def _search_problem(
     judge: Callable[[Parents], float],
 ) -> SearchProblem:
     graph, config = reward.graph, reward.config
+    certain: frozenset[Pair] = frozenset()
     if reward.searches_all_contacts:
-        usable, certain = frozenset(touching_pairs(graph)), frozenset[Pair]()
+        usable = frozenset(touching_pairs(graph))
     else:
         usable, certain = open_edges(reward.quality, edges, graph.n_parts, config)
     neighbours: list[list[int]] = [[] for _ in range(graph.n_parts)]
     for a, b in sorted(usable):
         neighbours[a].append(b)
         neighbours[b].append(a)
-    alike = (ends for cluster in graph.clusters for ends in combinations(cluster, 2))
-    forbidden = frozenset(alike) if config.cluster_edges == "forbid" else frozenset[Pair]()
+    clusters = graph.clusters if config.cluster_edges == "forbid" else ()
+    forbidden = frozenset(ends for cluster in clusters for ends in combinations(cluster, 2))
     return SearchProblem(
         root=root,
         neighbours=neighbours,
