@@ -76,4 +76,4 @@ def test_a_bridge_has_no_contact_strength() -> None:
     graph = graph_of(2, {})
     bridged = type(graph)(n_parts=2, edges=(edge(0, 1, 0.9, bridge=True),), clusters=(), tolerance=0.01)
     stats = [stat((0, 0, 0)), stat((1, 0, 0))]
-    assert PaperReward(bridged, stats, {}, PAPER).quality == {(0, 1): 0.0}
+    assert PaperReward(bridged, stats, evidence_of({}), PAPER).quality == {(0, 1): 0.0}

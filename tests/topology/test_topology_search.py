@@ -114,7 +114,7 @@ def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
 def test_parts_that_touch_nothing_are_joined_to_the_nearest(config: TopologyConfig, mode: str) -> None:
     graph = graph_of(4, {(0, 1): 0.5})
     stats = [stat((0, 0, 0), 9.0), stat((2, 0, 0), 4.0), stat((4, 0, 0), 2.0), stat((100, 0, 0))]
-    tree = rank_trees(graph, stats, {}, config.model_copy(update={"mode": mode}), seed=0, base=0)[0]
+    tree = rank_trees(graph, stats, evidence_of({}), config.model_copy(update={"mode": mode}), seed=0, base=0)[0]
     assert tree.parents == (-1, 0, 1, 2)
     assert tree.virtual == {(1, 2), (2, 3)}
 
@@ -123,7 +123,7 @@ def test_a_bridge_is_used_and_reported_as_virtual() -> None:
     edges = (edge(0, 1), edge(0, 2, bridge=True))
     graph = ContactGraph(n_parts=3, edges=edges, clusters=(), tolerance=0.01)
     stats = [stat((0, 0, 0), 9.0), stat((2, 0, 0)), stat((3, 0, 0))]
-    tree = rank_trees(graph, stats, {}, DEFAULT, seed=0)[0]
+    tree = rank_trees(graph, stats, evidence_of({}), DEFAULT, seed=0)[0]
     assert tree.parents == (-1, 0, 0)
     assert tree.virtual == {(0, 2)}
     assert tree.broken == frozenset()
