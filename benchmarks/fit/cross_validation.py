@@ -145,8 +145,7 @@ def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -
     """Probabilities after edges that are alike have agreed on a type, as the inference has it."""
     groups: dict[tuple[str, str, int], list[int]] = {}
     for k, example in enumerate(examples):
-        if example.alike >= 0:
-            groups.setdefault((example.origin, example.object, example.alike), []).append(k)
+        groups.setdefault((example.origin, example.object, example.alike), []).append(k)
     found = list(likely)
     for rows in groups.values():
         for k, given in zip(rows, agreed([examples[k].kinds for k in rows], [likely[k] for k in rows]), strict=True):

@@ -148,8 +148,8 @@ def _bearing(line: BearingLine) -> dict[str, Any]:
         "axis": line.axis.tolist(),
         "pivot": line.pivot.tolist(),
         "score": line.score,
-        "surface": [line.surface_a, line.surface_b],
-        "circles": [line.circles_a, line.circles_b],
+        "surface": [*line.surfaces],
+        "circles": [*line.rings],
     }
 
 

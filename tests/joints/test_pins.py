@@ -15,9 +15,7 @@ CONFIG = load_config()
 
 
 def bearing(pivot: tuple[float, float, float], axis: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> BearingLine:
-    return BearingLine(
-        axis=np.array(axis), pivot=np.array(pivot), score=1.0, surface_a=1, surface_b=1, circles_a=1, circles_b=1
-    )
+    return BearingLine(axis=np.array(axis), pivot=np.array(pivot), score=1.0, surfaces=(1, 1), rings=(1, 1))
 
 
 @pytest.mark.parametrize(("offset", "lean", "found"), [(0.0, 0.0, True), (0.1, 0.0, False), (0.0, 0.1, False)])

@@ -134,8 +134,7 @@ def edge_measurements(
     area = np.array([_mutual_area(edge, _NEAR * graph.tolerance) for edge in graph.edges])
     wide = np.array([_mutual_area(edge, _WIDE * graph.tolerance) for edge in graph.edges])
     total = np.bincount(np.concatenate([a, b]), np.concatenate([area, area]), minlength=len(stats))
-    label = np.array(graph.cluster_of)
-    twins = ((label[a] >= 0) & (label[a] == label[b])).astype(np.float64)
+    twins = (graph.alike.kind[a] == graph.alike.kind[b]).astype(np.float64)
     common = np.minimum(bounds[a, 1], bounds[b, 1]) - np.maximum(bounds[a, 0], bounds[b, 0]) + 1e-9 * diagonal
     inside = np.clip(common, 0.0, None).prod(axis=1) / np.minimum(extents[a].prod(axis=1), extents[b].prod(axis=1))
     bearing = score / (score + 0.02)

@@ -18,7 +18,7 @@ import numpy as np
 from kinematify.joints.candidate import ELSEWHERE, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.measurements import GROUPS, MeasuredHypotheses, measure
+from kinematify.joints.features.measurements import MeasuredHypotheses, measure
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
@@ -45,8 +45,7 @@ def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Val
         Name -> value of the turn about `axis` and of that about its opposite, shape (2,).
     """
     measured = MeasuredHypotheses(scene, _both_ways(axis, pivot), sided=True)
-    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
-    return {**found, **_leads_to(measured)}
+    return {**measure(measured), **_leads_to(measured)}
 
 
 def _both_ways(axis: FloatArray, pivot: FloatArray) -> Hypotheses:
@@ -82,7 +81,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
 def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
     """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
     velocity = m.velocity(point[None])[:, 0]
-    return np.asarray(velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None])
+    return velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None]
 
 
 # ---- conventions ---------------------------------------------------------------------------------------------------
@@ -216,16 +215,9 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
-    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, _both_ways(axis, pivot))
-    columns = np.stack([turning_columns(measured, row, scorer.measurements) for row in range(2)])
-    odds = float(np.sort(scorer.sums(columns)).mean()) / scorer.temperature
+    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(MeasuredHypotheses(scene, _both_ways(axis, pivot)))
+    odds = float(np.sort(scorer.sums(columns_of(measured, scorer.measurements, 2))).mean()) / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
-
-
-def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
-    """Return what the trees read of one hypothesis, shape (n,)."""
-    known = {name: measured[name][row : row + 1] for name in names if name in measured}
-    return np.asarray(columns_of(known, names, 1)[0])
 
 
 def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:

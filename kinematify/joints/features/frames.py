@@ -56,7 +56,7 @@ class BoxFrame:
     @property
     def centre(self) -> FloatArray:
         """Centre of the slab in the world frame [m], shape (3,)."""
-        return np.asarray(0.5 * (self.slab_lower + self.slab_upper) @ self.axes)
+        return 0.5 * (self.slab_lower + self.slab_upper) @ self.axes
 
     def local(self, points: FloatArray) -> FloatArray:
         """Coordinates of world points (n, 3) in this frame [m]."""
@@ -224,7 +224,7 @@ class Fold:
         """Turns about the fold that bring each half level with a face of this unit normal [rad], shape (2,)."""
         face = face * np.copysign(1.0, self.normals.sum(axis=0) @ face)
         sines = np.cross(self.normals, face) @ self.axis
-        return np.asarray(np.arctan2(sines, self.normals @ face))
+        return np.arctan2(sines, self.normals @ face)
 
 
 def find_fold(samples: SurfaceSamples, frame: BoxFrame, config: RockersConfig) -> Fold | None:

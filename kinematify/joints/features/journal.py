@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from kinematify.contact.graph import pair
 from kinematify.joints.bearings.refine_lines import line_frames
 
 if TYPE_CHECKING:
-    from kinematify.config import JournalConfig
+    from kinematify.config import JointsConfig, JournalConfig
     from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
 
@@ -49,6 +50,23 @@ class Facing:
     """Unit normals, shape (n, 3)."""
     areas: FloatArray
     """[m^2], shape (n,)."""
+
+
+def held_journal(cache: PartCache, parent: int, child: int, size: float, config: JointsConfig) -> Journal | None:
+    """Return what the parent holds the child by, within the band of their contact; None where they have none.
+
+    Args:
+        cache: The parts.
+        parent: Index of the parent.
+        child: Index of the child.
+        size: Largest extent of the child [m].
+        config: The band of contacts, and tolerances of journals.
+    """
+    edge = cache.graph.by_pair.get(pair(parent, child))
+    if edge is None:
+        return None
+    facing = facing_faces(cache, parent, child, edge.gap + config.contact_band * cache.diagonal, config.journal)
+    return find_journal(facing, size, config.journal)
 
 
 def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config: JournalConfig) -> Facing:

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import assembly_stats
-from kinematify.joints.features.journal import facing_faces, find_journal
+from kinematify.joints.features.journal import held_journal
 from kinematify.joints.features.workspace import PartCache
 
 if TYPE_CHECKING:
@@ -48,11 +48,11 @@ def find_pins(
         config: `topology` says what is clear and what is one line, `joints` how contacts are asked.
     """
     lines = {edge: bearing.lines[0] for edge, bearing in bearings.items() if bearing.lines}
-    topology, label = config.topology, graph.cluster_of
+    topology, kind = config.topology, graph.alike.kind
     doubtful = [
         (a, b)
         for a, b in on_cycles(graph.by_pair, graph.n_parts)
-        if (a, b) in lines and (lines[a, b].score < topology.clear_score or label[a] == label[b] >= 0)
+        if (a, b) in lines and (lines[a, b].score < topology.clear_score or kind[a] == kind[b])
     ]
     hulls = [item.hull_volume for item in assembly_stats(assembly)]
     found = coaxial_carriers(lines, angle=topology.stack_deg, distance=topology.stack_distance * assembly.diagonal)
@@ -108,14 +108,12 @@ def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distanc
     return found
 
 
-def has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
+def has_journal(cache: PartCache, ends: Pair, config: JointsConfig) -> bool:
     """True if a pin, barrel or shaft of one part sits in the other; looking from the smaller one.
 
     Leaves that lie edge to edge, fingers and drawers touch as well as a hinge does, but nothing of one goes round the
     other.
     """
-    small, large = sorted(pair, key=lambda part: (cache.assembly.parts[part].diagonal, part))
-    reach = cache.graph.by_pair[pair].gap + config.contact_band * cache.diagonal
-    facing = facing_faces(cache, large, small, reach, config.journal)
+    small, large = sorted(ends, key=lambda part: (cache.assembly.parts[part].diagonal, part))
     size = float(np.ptp(cache.assembly.parts[small].bounds, axis=0).max())
-    return find_journal(facing, size, config.journal) is not None
+    return held_journal(cache, large, small, size, config) is not None

@@ -49,7 +49,7 @@ class ContactView:
         """Area-weighted centre of the contact in the world frame [m], shape (3,); NaN without contact."""
         if len(self.points) == 0:
             return np.full(3, np.nan)
-        return np.asarray(self.weights @ self.points)
+        return self.weights @ self.points
 
     @cached_property
     def spread(self) -> tuple[FloatArray, FloatArray]:
@@ -95,6 +95,11 @@ class PartCache:
     def diagonal(self) -> float:
         """Diagonal of the assembly [m]; the unit of most tolerances."""
         return self.assembly.diagonal
+
+    def corners(self, part: int) -> FloatArray:
+        """Vertices of the faces of a part, world frame [m], shape (n, 3)."""
+        mesh = self.assembly.parts[part]
+        return mesh.vertices[np.unique(mesh.faces)]
 
     def _sampled(self, part: int) -> SurfaceSamples:
         return sample_surface(self.assembly.parts[part], self._samples, self._seed)
@@ -167,7 +172,7 @@ class PartCache:
             off = np.abs(self._solid(part).numbers(points[near], accuracy)) - 0.5
             result[near] = off > 0.0
             near = near[np.abs(off) < clear]
-        return np.asarray(result)
+        return result
 
     def inside_any(self, parts: Sequence[int], points: FloatArray) -> BoolArray:
         """Test whether points (n, 3) in the world frame lie inside the solid of one of some parts, shape (n,)."""
