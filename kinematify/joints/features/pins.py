@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
 from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import assembly_stats
@@ -69,14 +67,12 @@ def find_pins(
 def on_cycles(edges: Iterable[Pair], n: int) -> list[Pair]:
     """Edges that others could replace: without one of them, all parts that it joins are still connected."""
     kept = list(edges)
-    replaceable = []
-    for edge in kept:
-        rows, columns = np.array([other for other in kept if other != edge]).reshape(-1, 2).T
-        matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
-        labels = connected_components(matrix, directed=False)[1]
-        if labels[edge[0]] == labels[edge[1]]:
-            replaceable.append(edge)
-    return replaceable
+    incidence = np.zeros((len(kept), n))
+    for row, ends in zip(incidence, kept, strict=True):
+        row[list(ends)] = 1.0, -1.0
+    # An edge of unit resistance that nothing bypasses has the resistance 1 between its ends.
+    resistance = np.einsum("ij,jk,ik->i", incidence, np.linalg.pinv(incidence.T @ incidence), incidence)
+    return [edge for edge, between in zip(kept, resistance, strict=True) if between < 1.0 - 1e-6]
 
 
 def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distance: float) -> dict[Pair, frozenset[int]]:
@@ -90,21 +86,18 @@ def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distanc
     Returns:
         For every edge (a, b) with such parts: all c that touch both a and b, where all three turn on one line.
     """
-    touching: dict[int, set[int]] = {}
-    for a, b in lines:
-        touching.setdefault(a, set()).add(b)
-        touching.setdefault(b, set()).add(a)
+    parts = {part for edge in lines for part in edge}
 
     def coaxial(first: BearingLine, second: BearingLine) -> bool:
         offset = np.linalg.norm(np.cross(second.pivot - first.pivot, first.axis))
         return bool(abs(float(first.axis @ second.axis)) > np.cos(np.radians(angle)) and offset < distance)
 
     found = {}
-    for (a, b), line in lines.items():
-        common = touching[a] & touching[b]
-        carriers = frozenset(c for c in common if all(coaxial(line, lines[pair(end, c)]) for end in (a, b)))
+    for edge, line in lines.items():
+        others = [(part, [lines.get(pair(end, part)) for end in edge]) for part in parts]
+        carriers = frozenset(part for part, some in others if all(item and coaxial(line, item) for item in some))
         if carriers:
-            found[a, b] = carriers
+            found[edge] = carriers
     return found
 
 
