@@ -289,9 +289,11 @@ class _ExactSweeps:
     def _end(self, leader: int, pair: Pair, sign: float) -> float:
         travel = self._scene.travels[leader]
         swept = self._swept.get(travel.joint)
-        if swept and pair not in {item.pair for item in swept.sides[sign > 0.0].meetings if item.inside}:
-            return sign * np.inf
-        meeting = self._sweeper.meeting(leader, pair, sign)
+        meeting = (
+            next((item for item in swept.sides[sign > 0.0].meetings if item.inside and item.pair == pair), None)
+            if swept
+            else self._sweeper.meeting(leader, pair, sign)
+        )
         if meeting is None or meeting.depth <= self._forced:
             return sign * np.inf
         self.blocked.append(

@@ -79,18 +79,19 @@ class _Entry:
     """As it stands on the part; None where colours distinguish parts."""
 
 
-def render_preview(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
+def render_preview(model: KinematicModel, path: Path, config: PreviewConfig, robot: Robot | None = None) -> None:
     """Write a PNG with the model at rest and with every joint moved, side by side, and a legend of its joints.
 
     Args:
         model: What to show.
         path: PNG file to write.
         config: Size and quality.
+        robot: As of `opened_configuration`.
 
     Raises:
         OSError: The file cannot be written.
     """
-    write_sheet(model, rest_and_moved(model, config, ("at rest", "every joint moved")), config, path)
+    write_sheet(model, rest_and_moved(model, config, ("at rest", "every joint moved"), robot), config, path)
 
 
 def draw_robot(robot: Robot, poses: Mapping[str, FloatArray], azimuth: float) -> Image.Image:
@@ -120,14 +121,14 @@ def draw_robot(robot: Robot, poses: Mapping[str, FloatArray], azimuth: float) ->
 
 
 def rest_and_moved(
-    model: KinematicModel, config: PreviewConfig, captions: tuple[str, str]
+    model: KinematicModel, config: PreviewConfig, captions: tuple[str, str], robot: Robot | None = None
 ) -> tuple[PreviewPanel, PreviewPanel]:
-    """Panels of a model at rest and with every joint moved, with their captions."""
+    """Panels of a model at rest and with every joint moved (`opened_configuration`), with their captions."""
     number_of = {entry.name: entry.number for entry in _legend_entries(model)}
     numbers = tuple(number for name in _drawn_links(model) if (number := number_of[name]) is not None)
     rest, moved = (
         PreviewPanel(caption, scene_of(model, q, config), numbers)
-        for caption, q in zip(captions, ({}, opened_configuration(model, config)), strict=True)
+        for caption, q in zip(captions, ({}, opened_configuration(model, config, robot)), strict=True)
     )
     return rest, moved
 

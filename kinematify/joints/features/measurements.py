@@ -95,7 +95,7 @@ class MeasuredHypotheses:
     def radii(self, points: FloatArray) -> FloatArray:
         """Distances of points (n, 3) from each line [m], shape (h, n)."""
         h = self.hypotheses
-        return np.asarray(lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None])))
+        return np.asarray(lengths_of(crossed(points[None] - h.pivots[:, None], h.axes[:, None])))
 
     def velocity(self, points: FloatArray) -> FloatArray:
         """First motion of points (n, 3) by each hypothesis, shape (h, n, 3); zero for fixed."""
@@ -264,7 +264,7 @@ def bearing(m: MeasuredHypotheses) -> Values:
     found = scene.bearing.lines if scene.bearing is not None else ()
     for line in found:
         cosine = np.abs(h.axes @ line.axis)
-        apart = lengths_of(np.cross(line.pivot - h.pivots, line.axis)) / m.unit
+        apart = lengths_of(crossed(line.pivot - h.pivots, line.axis)) / m.unit
         same = (cosine > np.cos(np.radians(2.0))) & ((apart < 0.02) | (h.kinds == SLIDE))
         numbers = (
             line.score,
@@ -309,7 +309,7 @@ def place(m: MeasuredHypotheses) -> Values:
     reach = np.maximum(radius.max(axis=1), _TINY)
     result["mean_radius"] = radius.mean(axis=1) / reach
     result["least_radius"] = radius.min(axis=1) / reach
-    result["eccentric"] = lengths_of(np.cross(points.mean(axis=0) - h.pivots, h.axes)) / reach
+    result["eccentric"] = lengths_of(crossed(points.mean(axis=0) - h.pivots, h.axes)) / reach
     result["reach"] = reach / m.unit
     result["length"] = (np.abs(h.axes @ frame.axes.T) @ frame.extents) / m.unit
     body = scene.body_box
@@ -360,7 +360,7 @@ def contact_place(m: MeasuredHypotheses) -> Values:
         "contact_radius_most": reach,
         "contact_share_near": (radius < 0.06).mean(axis=1),
         "contact_spread_along": np.ptp(along, axis=0) / m.unit,
-        "contact_offset": lengths_of(np.cross(contact.centroid - h.pivots, h.axes)) / m.unit,
+        "contact_offset": lengths_of(crossed(contact.centroid - h.pivots, h.axes)) / m.unit,
         "contact_along": np.abs(h.axes @ vectors[:, 2]),
         "contact_across": np.abs(h.axes @ vectors[:, 0]),
         "contact_flatness": np.full(count, np.sqrt(max(values[0], 0.0) / values[2])),
@@ -504,9 +504,9 @@ def _sectors(m: MeasuredHypotheses, points: FloatArray) -> tuple[IntArray, Float
 def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two unit directions across each axis and each other, shape (h, 3) each."""
     helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
-    first = np.cross(axes, helper)
+    first = crossed(axes, helper)
     first /= np.maximum(lengths_of(first), _TINY)[:, None]
-    return first, np.cross(axes, first)
+    return first, crossed(axes, first)
 
 
 def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> FloatArray:
@@ -734,9 +734,9 @@ def _outward_rays(
 ) -> tuple[FloatArray, FloatArray]:
     """Four rays from each point into the half space that its normal shows, starts and unit directions, (4 n, 3)."""
     directions = rng.normal(size=(4, *points.shape))
-    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
     directions = directions + 1.05 * normals
-    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
     starts = np.broadcast_to(points + lift * normals, directions.shape)
     return starts.reshape(-1, 3), directions.reshape(-1, 3)
 
@@ -777,7 +777,7 @@ def neighbours(m: MeasuredHypotheses) -> Values:
     offset = centres - m.child.points.mean(axis=0)
     nearest = offset[int(np.argmin(lengths_of(offset)))]
     direction = nearest / max(float(np.linalg.norm(nearest)), _TINY)
-    apart = lengths_of(np.cross(offset[None] + m.arms[:, None], h.axes[:, None]))
+    apart = lengths_of(crossed(offset[None] + m.arms[:, None], h.axes[:, None]))
     return result | {
         "twin_coaxial": apart.min(axis=1) / m.unit,
         "twin_along": np.abs(h.axes @ direction),
