@@ -20,7 +20,7 @@ from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, 
 from kinematify.geometry.surface import FACETED
 from kinematify.processes.forked import each
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import box_gaps
+from kinematify.robot.vectors import box_gaps, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -153,7 +153,7 @@ def _smallest_gaps(
     apart = np.maximum(
         bounds[inside, None, 0] - bounds[None, outside, 1], bounds[None, outside, 0] - bounds[inside, None, 1]
     )
-    lower_bound = np.linalg.norm(np.maximum(apart, 0), axis=2)
+    lower_bound = lengths_of(np.maximum(apart, 0))
     found: dict[Pair, float] = {}
     smallest = np.inf
     for flat in np.argsort(lower_bound, axis=None, kind="stable"):
@@ -246,7 +246,7 @@ def find_clusters(
     shapes = [_centred_samples(surface, config.cluster_samples, seed) for surface in surfaces]
     prints = np.array([_fingerprint(points) for points in shapes])
     areas = np.array([surface.part.area for surface in surfaces])
-    sizes = np.array([np.linalg.norm(points, axis=1).max() for points in shapes])
+    sizes = np.array([lengths_of(points).max() for points in shapes])
     rough = np.array([surface.roughness > FACETED for surface in surfaces])
     alike = _alike(prints, areas, sizes, config.cluster_tolerance, rough[:, None] | rough)
     labels = np.arange(len(surfaces))
@@ -286,7 +286,7 @@ def _centred_samples(surface: PartSurface, count: int, seed: int) -> FloatArray:
 
 def _fingerprint(points: FloatArray) -> FloatArray:
     """Quantiles of the distance from the centroid and the principal spreads [m], shape (12,)."""
-    radii = np.quantile(np.linalg.norm(points, axis=1), _PROFILE_QUANTILES)
+    radii = np.quantile(lengths_of(points), _PROFILE_QUANTILES)
     spreads = np.sqrt(np.maximum(np.linalg.eigvalsh(points.T @ points / len(points)), 0))
     return np.concatenate([radii, spreads])
 

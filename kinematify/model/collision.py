@@ -485,7 +485,7 @@ def _box_axes(piece: ConvexPiece) -> FloatArray | None:
     along = piece.vertices @ axes.T
     low, high = along.min(axis=0), along.max(axis=0)
     corners = low + _BOX_CORNERS * (high - low)
-    farthest = np.linalg.norm(along[:, None] - corners[None], axis=2).min(axis=0).max()
+    farthest = lengths_of(along[:, None] - corners[None]).min(axis=0).max()
     return axes if farthest <= _SQUARE * float(np.linalg.norm(high - low)) else None
 
 

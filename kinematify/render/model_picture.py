@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt
 
 from kinematify.config import load_config
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades, usual_colors
+from kinematify.processes.forked import each
 from kinematify.render.model_scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -166,14 +167,16 @@ def draw_panels(
     azimuth = best_azimuth(model, shared, config)
     groups = [shared if panel.scene in shared else [panel.scene] for panel in panels]
     size = panel_size(groups, azimuth, config)
-    images = []
-    for panel, group in zip(panels, groups, strict=True):
-        camera = camera_for(group, azimuth, config, size=size, margin=MARGIN)
+
+    def drawn(number: int) -> Image.Image:
+        panel = panels[number]
+        camera = camera_for(groups[number], azimuth, config, size=size, margin=MARGIN)
         image = render_scene(panel.scene, camera, config)
         if panel.numbers and panel.caption:
             _draw_numbers(image, panel, camera)
-        images.append(image)
-    return size, images
+        return image
+
+    return size, each(drawn, range(len(panels)))
 
 
 def _draw_numbers(image: Image.Image, panel: PreviewPanel, camera: Camera) -> None:
