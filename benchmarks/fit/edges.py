@@ -63,15 +63,14 @@ def tree_example(
     surfaces = part_surfaces(assembly, config=config.surface)
     graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
     bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
+    stats = assembly_stats(assembly)
     return TreeExample(
         object=assembly.source,
         category=category,
         origin=origin,
         source=source,
         fits=fits,
-        measured=edge_measurements(
-            graph, assembly_stats(assembly), bearings, find_pins(assembly, graph, bearings, config)
-        ),
+        measured=edge_measurements(graph, stats, bearings, find_pins(assembly, graph, stats, bearings, config)),
         pairs=np.array(list(graph.by_pair), dtype=np.int64).reshape(-1, 2),
         parents=tuple(truth.parents),
     )

@@ -18,7 +18,7 @@ from kinematify.contact.alike import find_clusters, outline_of
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, Pair
 from kinematify.processes.forked import each
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import box_gaps
+from kinematify.robot.vectors import box_gaps, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -156,7 +156,7 @@ def _smallest_gaps(
     apart = np.maximum(
         bounds[inside, None, 0] - bounds[None, outside, 1], bounds[None, outside, 0] - bounds[inside, None, 1]
     )
-    lower_bound = np.linalg.norm(np.maximum(apart, 0), axis=2)
+    lower_bound = lengths_of(np.maximum(apart, 0))
     found: dict[Pair, float] = {}
     smallest = np.inf
     for flat in np.argsort(lower_bound, axis=None, kind="stable"):

@@ -42,7 +42,7 @@ def find_trees(
 ) -> tuple[KinematicTree, ...]:
     """The best kinematic trees of an assembly; arguments as in `rank_trees`."""
     stats = assembly_stats(assembly)
-    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config))
+    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, stats, bearings, config))
     return rank_trees(
         graph, stats, evidence, config.topology, seed=config.seed, base=base, simulated=simulated, warm=warm
     )
@@ -53,7 +53,7 @@ def tree_reward(
 ) -> TreeReward:
     """Return what trees of an assembly are worth under the configuration."""
     stats = assembly_stats(assembly)
-    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config))
+    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, stats, bearings, config))
     return _reward_class(config.topology)(graph, stats, evidence, config.topology)
 
 

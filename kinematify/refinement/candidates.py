@@ -22,6 +22,7 @@ from kinematify.joints.choice.limits import find_range
 from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -120,7 +121,7 @@ class CandidateJoints:
         hypotheses = judged.hypotheses
         apart = 1.0 - np.abs(hypotheses.axes @ joint.axis)
         if joint.kind.turns:
-            apart += np.linalg.norm(np.cross(hypotheses.pivots - joint.pivot, joint.axis), axis=1) / judged.size
+            apart += lengths_of(crossed(hypotheses.pivots - joint.pivot, joint.axis)) / judged.size
         apart[hypotheses.kinds != (TURN if joint.kind.turns else SLIDE)] = np.inf
         return float(judged.scores[int(np.argmin(apart))] - judged.scores.max())
 
@@ -133,7 +134,7 @@ def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
         return False
     if not joint.kind.turns:
         return True
-    apart = float(np.linalg.norm(np.cross(candidate.pivot - joint.pivot, joint.axis)))
+    apart = float(np.linalg.norm(crossed(candidate.pivot - joint.pivot, joint.axis)))
     return apart < 1e-9 + 1e-6 * float(np.linalg.norm(candidate.pivot))
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
+from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.bearings.scores import BearingLine
 from kinematify.joints.features.pins import coaxial_carriers, find_pins
 from tests.joints.joint_scenes import evidence
@@ -29,7 +30,7 @@ def test_a_carrier_bears_both_shafts_on_their_own_line(offset: float, lean: floa
 def test_the_case_bears_the_hands_of_a_clock_and_no_hand_bears_the_case() -> None:
     known = clock()
     _, graph, bearings = evidence(known)
-    carriers = find_pins(known.assembly, graph, bearings, CONFIG).carriers
+    carriers = find_pins(known.assembly, graph, assembly_stats(known.assembly), bearings, CONFIG).carriers
     case, first, second = (known.index[name] for name in ("case", "hand_0", "hand_1"))
     assert carriers[first, second] == {case}
     assert not any(parts for edge, parts in carriers.items() if case in edge)

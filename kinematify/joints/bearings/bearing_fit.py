@@ -221,7 +221,7 @@ def _turned_lines(
         support = line_support(side, line, config)
         arm = side.points - line.point
         height = float(np.ptp(arm @ line.axis))
-        width = 2 * float(np.linalg.norm(np.cross(arm, line.axis), axis=1).max())
+        width = 2 * float(np.linalg.norm(crossed(arm, line.axis), axis=1).max())
         shares = (support, 0.0) if own == pair[0] else (0.0, support)
         if support >= config.turned_support and height <= config.turned_length * width:
             lines.append(

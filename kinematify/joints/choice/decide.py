@@ -18,7 +18,7 @@ from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
 from kinematify.processes.forked import each
 from kinematify.robot.exact_faces import joined_faces
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -142,7 +142,7 @@ def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
         return replace(item, axis=direction * np.sign(direction @ item.axis))
     if not item.kind.turns:
         return item
-    beside = lengths_of(np.cross(points - item.pivot, axes))
+    beside = lengths_of(crossed(points - item.pivot, axes))
     near = (_angles(axes, item.axis) < _NEAR) & (beside < _BESIDE * diagonal)
     if not near.any():
         return item
@@ -153,4 +153,4 @@ def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
 
 def _angles(directions: FloatArray, axis: FloatArray) -> FloatArray:
     """Between lines, shape (n,) [rad]; by the sine, since cosines near 1 are blunt."""
-    return np.arcsin(np.clip(lengths_of(np.cross(directions, axis)), 0.0, 1.0))
+    return np.arcsin(np.clip(lengths_of(crossed(directions, axis)), 0.0, 1.0))

@@ -75,8 +75,9 @@ class JudgedAssembly:
     def qualities(self) -> Mapping[Pair, float]:
         """Return how good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
         bearings = {pair: found for pair in self.graph.by_pair if (found := self.bearing(pair)) is not None}
-        pins = find_pins(self.assembly, self.graph, bearings, self.config)
-        return edge_qualities(self.graph, assembly_stats(self.assembly), bearings, pins)
+        stats = assembly_stats(self.assembly)
+        pins = find_pins(self.assembly, self.graph, stats, bearings, self.config)
+        return edge_qualities(self.graph, stats, bearings, pins)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -13,6 +13,7 @@ from kinematify.joints.candidate import FIXED, SLIDE, TURN, JointCandidate, Join
 from kinematify.joints.choice.opening import rigid_odds
 from kinematify.joints.choice.scorer import shipped_scorer
 from kinematify.joints.features.workspace import point_cloud
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -93,7 +94,7 @@ class Posterior:
     def _apart(self) -> FloatArray:
         """Distance of the pivot of each hypothesis from the line of each other one [m], shape (h, h)."""
         h = self.hypotheses
-        return np.asarray(np.linalg.norm(np.cross(h.pivots[:, None] - h.pivots[None], h.axes[:, None]), axis=2))
+        return np.asarray(lengths_of(crossed(h.pivots[:, None] - h.pivots[None], h.axes[:, None])))
 
     @cached_property
     def _same(self) -> BoolArray:

@@ -18,6 +18,7 @@ from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import Sweep, moving_points, slide_clearance, slide_paths, turn_paths
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -179,7 +180,7 @@ def _rocker_range(scene: JointScene, axis: FloatArray, free: Ways) -> Range:
 
 def _pedal_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways) -> Range:
     """A pedal goes down, by no more than a lever does."""
-    sign = 1.0 if float(np.cross(axis, scene.centre - pivot)[2]) < 0.0 else -1.0
+    sign = 1.0 if float(crossed(axis, scene.centre - pivot)[2]) < 0.0 else -1.0
     return _range(sign, AS_GIVEN, min(free[0 if sign > 0 else 1], _usual(scene.config.limits.lever_deg)), free)
 
 
@@ -253,7 +254,7 @@ def _square_turns(scene: JointScene, axis: FloatArray) -> tuple[list[float], boo
         across = face - (face @ axis) * axis
         if np.linalg.norm(across) < 0.9 or abs(float(normal @ axis)) > 0.3:
             continue
-        tilt = float(np.arctan2(np.cross(normal, across) @ axis, normal @ across))
+        tilt = float(np.arctan2(crossed(normal, across) @ axis, normal @ across))
         turns += [tilt, tilt - np.copysign(np.pi, tilt)]
     least = np.radians(scene.config.limits.square_deg)
     others = [turn for turn in turns if least < abs(turn) < np.pi - least]
@@ -270,8 +271,8 @@ def _touches_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray) -
     """The panel touches its body away from the hinge, as a closed one does on its frame."""
     if len(scene.contact.points) == 0:
         return False
-    reach = np.linalg.norm(np.cross(scene.cache.samples(scene.child).points - pivot, axis), axis=1).max()
-    apart = np.linalg.norm(np.cross(scene.contact.points - pivot, axis), axis=1)
+    reach = np.linalg.norm(crossed(scene.cache.samples(scene.child).points - pivot, axis), axis=1).max()
+    apart = np.linalg.norm(crossed(scene.contact.points - pivot, axis), axis=1)
     near = (apart < scene.config.panels.hinge_band * reach) @ scene.contact.weights
     return bool(near < scene.config.panels.ajar_share)
 
@@ -365,8 +366,8 @@ def _press(scene: JointScene, direction: FloatArray, length: float) -> LimitEnd:
     own = scene.cache.samples(scene.child).points
     body = scene.cache.samples(scene.parent).points
     centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
-    wide = 2.0 * float(np.linalg.norm(np.cross(own - centre, direction), axis=1).max())
-    around = body[np.linalg.norm(np.cross(body - centre, direction), axis=1) < wide]
+    wide = 2.0 * float(lengths_of(crossed(own - centre, direction)).max())
+    around = body[lengths_of(crossed(body - centre, direction)) < wide]
     visible = length
     if len(around) > 10:
         visible = min(length, max(float((around @ direction).min() - (own @ direction).min()), 0.0))
@@ -405,7 +406,7 @@ def _is_sheath(scene: JointScene, axis: FloatArray) -> bool:
         return False
     across = contact.normals - (contact.normals @ axis)[:, None] * axis
     inwards = np.einsum("ij,ij->i", across, contact.points - contact.centroid) < 0.0
-    aside = np.linalg.norm(across, axis=1) > 0.5
+    aside = lengths_of(across) > 0.5
     return bool(contact.weights @ (inwards & aside) > 0.8 * max(float(contact.weights @ aside), 1e-12))
 
 

@@ -19,7 +19,7 @@ from kinematify.joints.candidate import ELSEWHERE, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.measurements import MeasuredHypotheses, measure
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -98,7 +98,7 @@ def default_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: F
     """
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
-    rises = float(np.cross(axis, scene.centre - pivot) @ UP)
+    rises = float(crossed(axis, scene.centre - pivot) @ UP)
     if abs(rises) < 0.05 * scene.frame.diagonal:
         return swing_sign(scene, axis, pivot)
     return 1.0 if rises > 0.0 else -1.0
@@ -115,7 +115,7 @@ def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
     centroids, areas = np.array([part.centroid for part in parts]), np.array([part.area for part in parts])
     moving = np.setdiff1d(np.arange(len(parts)), (scene.parent, *scene.others))
     limb = np.average(centroids[moving], axis=0, weights=areas[moving])
-    velocity = np.cross(axis, limb - pivot)
+    velocity = crossed(axis, limb - pivot)
     speed = float(np.linalg.norm(velocity))
     if speed < 0.05 * scene.frame.diagonal:
         return neutral_sign(scene, axis)

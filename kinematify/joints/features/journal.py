@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from kinematify.contact.graph import pair
 from kinematify.joints.bearings.refine_lines import line_frames
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig, JournalConfig
@@ -87,8 +88,8 @@ def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config
     lower, upper = cache.assembly.parts[parent].bounds
     near = np.flatnonzero(((centroids > lower - reach) & (centroids < upper + reach)).all(axis=1))
     near = near[:: max(1, -(-len(near) // config.faces))]
-    area_normals = 0.5 * np.cross(corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0])
-    areas = np.linalg.norm(area_normals, axis=1)
+    area_normals = 0.5 * crossed(corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0])
+    areas = lengths_of(area_normals)
     near, area_normals, areas = near[areas > 0], area_normals[areas > 0], areas[areas > 0]
     points, normals = centroids[near], area_normals / areas[:, None]
     distance, closest, other = cache.closest(parent, points)
@@ -131,12 +132,12 @@ def _proposals(
     neighbours = tree.query(facing.points[first], k=min(config.neighbours, len(facing.areas)))[1]
     second = np.take_along_axis(neighbours, rng.integers(neighbours.shape[1], size=(config.pairs, 1)), axis=1)[:, 0]
     n1, n2 = facing.normals[first], facing.normals[second]
-    cross = np.cross(n1, n2)
-    sine = np.linalg.norm(cross, axis=1)
+    cross = crossed(n1, n2)
+    sine = lengths_of(cross)
     good = sine > config.least_sine
     axes = cross[good] / sine[good, None]
     offset = facing.points[second][good] - facing.points[first][good]
-    along = np.einsum("ij,ij->i", np.cross(offset, n2[good]), axes) / sine[good]
+    along = np.einsum("ij,ij->i", crossed(offset, n2[good]), axes) / sine[good]
     return axes, facing.points[first][good] + along[:, None] * n1[good], np.abs(along)
 
 
@@ -168,7 +169,7 @@ def _fitting(facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float,
     """Which faces lie at a radius and look along it, shape (n,)."""
     offset = facing.points - pivot
     radial = offset - (offset @ axis)[:, None] * axis
-    length = np.linalg.norm(radial, axis=1)
+    length = lengths_of(radial)
     along = np.abs(np.einsum("ij,ij->i", radial, facing.normals)) > np.cos(config.normal_tolerance) * length
     return np.asarray(along & (np.abs(length - radius) < config.radius_tolerance * radius))
 
@@ -189,8 +190,8 @@ def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal
         if leaning[0] > config.leaning:
             return None
         axis = directions[:, 0]
-        tangents = np.cross(axis, normals)
-        tangents /= np.maximum(np.linalg.norm(tangents, axis=1), 1e-12)[:, None]
+        tangents = crossed(axis, normals)
+        tangents /= np.maximum(lengths_of(tangents), 1e-12)[:, None]
         system = (tangents * weights[:, None]).T @ tangents
         aim = (tangents * weights[:, None]).T @ np.einsum("ij,ij->i", tangents, points)
         along = float(pivot @ axis)

@@ -101,7 +101,7 @@ class MeasuredHypotheses:
     def radii(self, points: FloatArray) -> FloatArray:
         """Distances of points (n, 3) from each line [m], shape (h, n)."""
         h = self.hypotheses
-        return lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None]))
+        return lengths_of(crossed(points[None] - h.pivots[:, None], h.axes[:, None]))
 
     def velocity(self, points: FloatArray) -> FloatArray:
         """First motion of points (n, 3) by each hypothesis, shape (h, n, 3); zero for fixed."""
@@ -268,7 +268,7 @@ def bearing(m: MeasuredHypotheses) -> _Found:
     found = scene.bearing.lines if scene.bearing is not None else ()
     for line in found:
         cosine = np.abs(h.axes @ line.axis)
-        apart = lengths_of(np.cross(line.pivot - h.pivots, line.axis)) / m.unit
+        apart = lengths_of(crossed(line.pivot - h.pivots, line.axis)) / m.unit
         same = (cosine > np.cos(np.radians(2.0))) & ((apart < 0.02) | (h.kinds == SLIDE))
         numbers = (
             same * line.score,
@@ -362,7 +362,7 @@ def contact_place(m: MeasuredHypotheses) -> _Found:
         "contact_radius_most": reach,
         "contact_share_near": (radius < 0.06).mean(axis=1),
         "contact_spread_along": np.ptp(along, axis=0) / m.unit,
-        "contact_offset": lengths_of(np.cross(contact.centroid - h.pivots, h.axes)) / m.unit,
+        "contact_offset": lengths_of(crossed(contact.centroid - h.pivots, h.axes)) / m.unit,
         "contact_along": np.abs(h.axes @ vectors[:, 2]),
         "contact_across": np.abs(h.axes @ vectors[:, 0]),
         "contact_flatness": np.sqrt(max(values[0], 0.0) / values[2]),
@@ -706,9 +706,9 @@ def _outward_rays(
 ) -> tuple[FloatArray, FloatArray]:
     """Four rays from each point into the half space that its normal shows, starts and unit directions, (4 n, 3)."""
     directions = rng.normal(size=(4, *points.shape))
-    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
     directions = directions + 1.05 * normals
-    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
     starts = np.broadcast_to(points + lift * normals, directions.shape)
     return starts.reshape(-1, 3), directions.reshape(-1, 3)
 
@@ -746,7 +746,7 @@ def neighbours(m: MeasuredHypotheses) -> _Found:
     offset = centres - m.child.points.mean(axis=0)
     nearest = offset[int(np.argmin(lengths_of(offset)))]
     direction = nearest / max(float(np.linalg.norm(nearest)), _TINY)
-    apart = lengths_of(np.cross(offset[None] + m.arms[:, None], h.axes[:, None]))
+    apart = lengths_of(crossed(offset[None] + m.arms[:, None], h.axes[:, None]))
     return result | {
         "twin_coaxial": apart.min(axis=1) / m.unit,
         "twin_along": np.abs(h.axes @ direction),

@@ -187,7 +187,7 @@ def contact_clearance(
     limit = np.radians(scene.config.clearance.turn_deg)
     turned = turn_paths(scene.cache, points, axes, pivots, limit=limit, config=_strict(scene.config))
     free = turned.against((scene.parent,)).free(_share(scene)).max(axis=1)
-    radii = np.linalg.norm(np.cross(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
+    radii = np.linalg.norm(crossed(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
     arcs = np.where(free >= limit, np.inf, free * radii)
     return Clearance(turn=float(arcs.max()), slide=float(_slid(scene, points, direction).max()))
 

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.features.journal import held_journal
 from kinematify.joints.features.workspace import PartCache
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config, JointsConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
 
 
@@ -35,13 +35,18 @@ class EdgePins:
 
 
 def find_pins(
-    assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
+    assembly: Assembly,
+    graph: ContactGraph,
+    stats: Sequence[PartStats],
+    bearings: Mapping[Pair, EdgeBearing],
+    config: Config,
 ) -> EdgePins:
     """Ask the edges that others could replace and that have no clear bearing or join congruent parts, and coaxial ones.
 
     Args:
         assembly: The parts.
         graph: Their contacts.
+        stats: What is measured of the parts.
         bearings: Bearing lines of the edges, best first.
         config: `topology` says what is clear and what is one line, `joints` how contacts are asked.
     """
@@ -52,7 +57,7 @@ def find_pins(
         for a, b in on_cycles(graph.by_pair, graph.n_parts)
         if (a, b) in lines and (lines[a, b].score < topology.clear_score or kind[a] == kind[b])
     ]
-    hulls = [item.hull_volume for item in assembly_stats(assembly)]
+    hulls = [item.hull_volume for item in stats]
     found = coaxial_carriers(lines, angle=topology.stack_deg, distance=topology.stack_distance * assembly.diagonal)
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
     return EdgePins(

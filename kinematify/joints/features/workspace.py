@@ -13,7 +13,7 @@ from embreex.rtcore_scene import EmbreeScene
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
 from kinematify.joints.features.frames import body_axes
-from kinematify.robot.vectors import all_three, lengths_of
+from kinematify.robot.vectors import all_three, crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -159,8 +159,8 @@ class PartCache:
         tree = self._tree(part)
         distances, index, closest = tree.nearest(points)
         corners = tree.vertices[tree.faces[index]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+        normals = crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
         return distances, closest, normals
 
     def inside(self, part: int, points: FloatArray) -> BoolArray:

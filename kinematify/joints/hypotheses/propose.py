@@ -12,7 +12,7 @@ import numpy as np
 from kinematify.joints.bearings.line import Lines
 from kinematify.joints.candidate import CENTRE, CORNER, ELSEWHERE, FIXED, GIVEN, HALF_WAY, SLIDE, TURN, Hypotheses
 from kinematify.joints.features.frames import UP
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -93,7 +93,7 @@ def _distinct(
     axes, points = [line[0] for line in known], [line[1] for line in known]
     found = []
     for axis, point in lines:
-        apart = lengths_of(np.cross(np.array(points) - point, axis))
+        apart = lengths_of(crossed(np.array(points) - point, axis))
         same = (np.abs(np.array(axes) @ axis) > np.cos(np.radians(_SAME_DEG))) & (
             apart < _SAME_LINE * scene.frame.diagonal
         )
@@ -160,7 +160,7 @@ def _centre_directions(scene: JointScene, held: FloatArray) -> list[FloatArray]:
     away = scene.centre - held
     found = [*scene.cache.upright_axes, *scene.parent_frame.axes, *scene.frame.axes]
     for first, second in ((away, UP), (away, scene.frame.axes[scene.frame.thin])):
-        across = np.cross(first, second)
+        across = crossed(first, second)
         length = float(np.linalg.norm(across))
         if length > _LEAST_ACROSS * float(np.linalg.norm(first)) > 0.0:
             found.append(across / length)
