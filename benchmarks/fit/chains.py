@@ -129,7 +129,9 @@ def _boards(d: _Chains) -> None:
         links = int(rng.choice([1, 1, 2, 3, 4]))
         reaches = 2 * half[1 - k // 2] * (np.ones(links) if alike else rng.uniform(0.2, 1.0, links))
         frame, width = _side(k, half, -0.5 * d.thick)
-        d.panels(frame, width * rng.uniform(0.6, 1.0), reaches, rng.uniform(-1.2, 1.2, links) * (rng.random() < 0.7))
+        width *= rng.uniform(0.6, 1.0)
+        turns = rng.uniform(-1.2, 1.2, links) * (rng.random() < 0.7)
+        d.panels(frame, width, reaches.tolist(), turns.tolist())
 
 
 def _bars(d: _Chains) -> None:

@@ -144,7 +144,7 @@ def edge_measurements(
             np.linalg.norm(bounds[small, 1] - bounds[small, 0], axis=1) / diagonal,
             np.minimum(inside, 1.0),
             np.array([edge in pins.journals for edge in graph.by_pair]),
-            np.array([_line(*sides, bounds[part]) for sides, part in zip(near[0], large, strict=True)]),
+            np.array([_line(one, other, bounds[part]) for (one, other), part in zip(near[0], large, strict=True)]),
         ]
     )
 
