@@ -28,6 +28,7 @@ from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import pose_at, transformed
+from kinematify.robot.vectors import lengths_of
 from kinematify.simulation.engines import engines_that_hold
 
 if TYPE_CHECKING:
@@ -235,7 +236,7 @@ def _hold(articulated_object: ArticulatedObject, joint: str, opened: float) -> F
         return None
     first, last = (articulated_object.link_pose(joint, value) for value in (None, opened))
     moves = transformed(corners, last) - transformed(corners, first)
-    lengths = np.linalg.norm(moves, axis=1)
+    lengths = lengths_of(moves)
     far = np.flatnonzero(lengths >= 0.98 * lengths.max())
     ahead = np.einsum("nd,nd->n", transformed(corners[far], first), moves[far])
     return np.asarray(corners[far[int(ahead.argmax())]])
@@ -261,7 +262,7 @@ def _longest_way(articulated_object: ArticulatedObject, joint: str) -> float:
     travel = articulated_object.travel(joint)
     poses = [articulated_object.link_pose(joint, value) for value in np.linspace(travel.rest, open_end(travel), 5)]
     places = np.stack([transformed(corners, T) for T in poses])
-    return float(np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=0).max())
+    return float(lengths_of(np.diff(places, axis=0)).sum(axis=0).max())
 
 
 def _path(articulated_object: ArticulatedObject, joint: str, opened: float, point: FloatArray) -> FloatArray:
@@ -271,7 +272,7 @@ def _path(articulated_object: ArticulatedObject, joint: str, opened: float, poin
 
 
 def _length(path: FloatArray) -> float:
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    return float(lengths_of(np.diff(path, axis=0)).sum())
 
 
 def _standing(scene: Scene) -> FloatArray:

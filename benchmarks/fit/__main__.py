@@ -39,9 +39,9 @@ from kinematify.cli.progress import progress_reporter
 )
 @click.option(
     "--skip",
-    type=click.Choice(["fixed", "edges", "described"]),
+    type=click.Choice(["fixed", "described"]),
     multiple=True,
-    help="Do not refit what detects fixed parts, or the edges of the tree; do not evaluate described objects.",
+    help="Do not refit what detects fixed parts; do not evaluate described objects.",
 )
 @json_option
 def command(
@@ -62,7 +62,7 @@ def command(
 
     Each object has a model.urdf and a source.json, as those of `kinematify bench`; those whose licence is for research
     alone judge and are not fitted to. What was measured is kept beside the weights, so that an interrupted run goes on.
-    To ship new weights, copy the .npz files and edges.json into kinematify/joints/choice.
+    To ship new weights, copy the .npz files into kinematify/joints/choice.
     """
     if packages:
         write_installed(out / "packages")

@@ -9,7 +9,6 @@ from benchmarks.fit.drawn import corpus_kinds
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from benchmarks.fit.edges import TreeExample
     from benchmarks.fit.examples import Example
 
 ALIKE: Mapping[str, tuple[str, ...]] = {
@@ -118,7 +117,7 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
 _OF_NAME = {name: category for category, names in ALIKE.items() for name in names}
 
 
-def category_of(example: Example | TreeExample) -> str:
+def category_of(example: Example) -> str:
     """The word that real objects of the same kind carry."""
     name = example.category
     if name in _OF_NAME or name not in corpus_kinds():

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchmarks.fit.chains import chain
 from benchmarks.fit.composed import compose
 from benchmarks.fit.drawn import DRAWN, corpus_kinds, drawn_object
 from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
@@ -39,12 +40,12 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import GroundTruth
     from kinematify.generate.procedural.blueprint import Blueprint
 
-FAMILY, DESCRIBED, PROGRAMMED, COMPOSED = GENERATED = "family", "described", "programmed", "composed"
+GENERATED = FAMILY, DESCRIBED, PROGRAMMED, COMPOSED, CHAINS = "family", "described", "programmed", "composed", "chains"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
 _BROKEN_ROUNDS = 2
-_TREE_ROUNDS = 2
+_CHAINS = 120
 _MOST_PARTS = 25  # of an object with pieces broken off
 _AJAR = 0.25  # of the generated objects
 _TIMEOUT = 3600.0  # [s] of one object, on a busy machine
@@ -98,13 +99,10 @@ def broken_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
     ]
 
 
-def tree_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
-    """Those whose contacts the edges of the tree are fitted to: whole ones, and two of every kind."""
-    return [
-        source
-        for source in sources
-        if not source.broken and (source.number < _TREE_ROUNDS or source.origin == COMPOSED)
-    ]
+def tree_sources() -> list[CorpusSource]:
+    """Generated objects that the edges of the tree are fitted to: families and chains."""
+    families = [CorpusSource(origin=FAMILY, name=name) for name in sorted(FAMILIES)]
+    return families + [CorpusSource(origin=CHAINS, name=CHAINS, number=n) for n in range(_CHAINS)]
 
 
 def gather_examples(
@@ -300,6 +298,8 @@ def _drawn(source: CorpusSource, number: int) -> Blueprint:
     ways = list(WAYS)
     if source.origin == PROGRAMMED:
         return drawn_object(source.name, number)
+    if source.origin == CHAINS:
+        return chain(number)
     if source.origin == COMPOSED:
         way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
         return augment(compose(number), way, rng=np.random.default_rng(number))

@@ -5,13 +5,12 @@ from __future__ import annotations
 import zlib
 from dataclasses import asdict, dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from benchmarks.fit.categories import category_of
 from benchmarks.fit.corpora import COMPOSED, DESCRIBED, FAMILY, GENERATED, PROGRAMMED
-from benchmarks.fit.edges import edges_row, fit_edges
 from benchmarks.fit.examples import content_key
 from benchmarks.fit.trees import (
     Seeds,
@@ -38,13 +37,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from benchmarks.fit.edges import EdgesRow, TreeExample
     from benchmarks.fit.examples import Example
     from kinematify.config import ConfidenceConfig
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
 
-_Kind = TypeVar("_Kind", "Example", "TreeExample")
 _FOLDS = 5
 _ONE = Seeds()
 _GENERATED_SETS = {
@@ -145,8 +142,7 @@ def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -
     """Probabilities after edges that are alike have agreed on a type, as the inference has it."""
     groups: dict[tuple[str, str, int], list[int]] = {}
     for k, example in enumerate(examples):
-        if example.alike >= 0:
-            groups.setdefault((example.origin, example.object, example.alike), []).append(k)
+        groups.setdefault((example.origin, example.object, example.alike), []).append(k)
     found = list(likely)
     for rows in groups.values():
         for k, given in zip(rows, agreed([examples[k].kinds for k in rows], [likely[k] for k in rows]), strict=True):
@@ -205,20 +201,6 @@ def _answered(
     }
 
 
-def judge_edges_left_out(examples: Sequence[TreeExample]) -> dict[str, EdgesRow]:
-    """How many edges of the true trees are found with weights whose fit had nothing of the category; by set."""
-    folds = folds_of(examples)
-    scores: dict[int, FloatArray] = {}
-    for fold in sorted(set(folds)):
-        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
-        weights = fit_edges(fitted, {})
-        scores |= {k: weights.scores(examples[k].measured) for k, at in enumerate(folds) if at == fold}
-    return {
-        name: edges_row([examples[k] for k in index], [scores[k] for k in index])
-        for name, index in sets_of(examples).items()
-    }
-
-
 def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, AnswersRow]:
     """Which way turns open, by trees whose fit had nothing of the category; by set."""
 
@@ -240,7 +222,7 @@ def _share(taken: NDArray[np.bool_]) -> float | None:
     return float(taken.mean()) if len(taken) else None
 
 
-def folds_of(examples: Sequence[_Kind]) -> list[int]:
+def folds_of(examples: Sequence[Example]) -> list[int]:
     """The fold of each example: by the name of its category alone, so that a new category moves no other."""
     return [zlib.crc32(category_of(example).encode()) % _FOLDS for example in examples]
 
@@ -299,7 +281,7 @@ def calibration_of(examples: Sequence[Example], likely: Sequence[FloatArray]) ->
     }
 
 
-def sets_of(examples: Sequence[_Kind]) -> dict[str, list[int]]:
+def sets_of(examples: Sequence[Example]) -> dict[str, list[int]]:
     """Name of each set that has a row of its own -> positions of its examples."""
     found: dict[str, list[int]] = {}
     for k, example in enumerate(examples):

@@ -15,7 +15,7 @@ from kinematify.contact.build_graph import build_contact_graph
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_bearings
-from kinematify.joints.choice.edges import FORMAT, MEASUREMENTS, EdgeWeights, edge_measurements, edge_probabilities
+from kinematify.joints.choice.edges import MEASUREMENTS, EdgeWeights, edge_measurements, edge_probabilities
 from kinematify.joints.features.pins import find_pins
 from kinematify.topology.search import maximum_spanning_edges
 
@@ -63,15 +63,14 @@ def tree_example(
     surfaces = part_surfaces(assembly, config=config.surface)
     graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
     bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
+    stats = assembly_stats(assembly)
     return TreeExample(
         object=assembly.source,
         category=category,
         origin=origin,
         source=source,
         fits=fits,
-        measured=edge_measurements(
-            graph, assembly_stats(assembly), bearings, find_pins(assembly, graph, bearings, config)
-        ),
+        measured=edge_measurements(graph, stats, bearings, find_pins(assembly, graph, stats, bearings, config)),
         pairs=np.array(list(graph.by_pair), dtype=np.int64).reshape(-1, 2),
         parents=tuple(truth.parents),
     )
@@ -86,7 +85,7 @@ def fit_edges(examples: Sequence[TreeExample], provenance: Mapping[str, Any]) ->
     usable = [item for item in examples if len(item.pairs) >= len(item.parents) == int(item.true.sum()) + 1]
     if not usable:
         flat = np.zeros(len(MEASUREMENTS))
-        return EdgeWeights(measurements=MEASUREMENTS, mean=flat, scale=flat + 1.0, weights=flat, provenance=provenance)
+        return EdgeWeights(weights=flat, offset=0.0, provenance=provenance)
     values = np.concatenate([item.measured for item in usable])
     mean, scale = values.mean(axis=0), values.std(axis=0) + 1e-9
     standard = [(item.measured - mean) / scale for item in usable]
@@ -108,50 +107,25 @@ def fit_edges(examples: Sequence[TreeExample], provenance: Mapping[str, Any]) ->
 
     found = minimize(log_loss, np.zeros(values.shape[1]), jac=True, method="L-BFGS-B")
     return EdgeWeights(
-        measurements=MEASUREMENTS,
-        mean=mean,
-        scale=scale,
-        weights=found.x,
+        weights=found.x / scale,
+        # Qualities saturate; those of true edges are not to, or what competes with them looks as good.
+        offset=-float(values[np.concatenate(true) > 0].mean(axis=0) @ (found.x / scale)),
         provenance={**provenance, "objects": len(usable), "recipe": edge_recipe_key()},
     )
 
 
 def edge_recipe_key() -> str:
     """Hash of how the weights are fitted."""
-    return content_key(MEASUREMENTS, FORMAT, _PENALTY)
+    return content_key(MEASUREMENTS, _PENALTY)
 
 
-@dataclass(frozen=True, kw_only=True)
-class EdgesRow:
-    """How many of the true edges of a set the likeliest trees have, whatever their root."""
-
-    objects: int
-    edges: int
-    found: float
-    """Share of the edges."""
-    whole: float
-    """Share of the objects all of whose edges are found."""
-
-
-def edges_row(examples: Sequence[TreeExample], scores: Sequence[FloatArray]) -> EdgesRow:
-    """Figures of a set.
-
-    Args:
-        examples: Of the set.
-        scores: Of the edges of each, shape (m,).
-    """
-    missed = [_missed(example, values) for example, values in zip(examples, scores, strict=True)]
-    edges = sum(len(example.parents) - 1 for example in examples)
-    return EdgesRow(
-        objects=len(examples),
-        edges=edges,
-        found=1.0 - sum(missed) / max(edges, 1),
-        whole=float(np.mean([number == 0 for number in missed])),
-    )
+def missed_edges(examples: Sequence[TreeExample], weights: EdgeWeights) -> int:
+    """True edges that the likeliest trees lack, whatever their root."""
+    return sum(_missed(example, weights.scores(example.measured)) for example in examples)
 
 
 def _missed(example: TreeExample, scores: FloatArray) -> int:
-    """True edges that the likeliest tree lacks."""
+    """The same of one object."""
     n = len(example.parents)
     weights = {(int(a), int(b)): float(score) for (a, b), score in zip(example.pairs, scores, strict=True)}
     found = maximum_spanning_edges(weights, n) if weights else ()
@@ -164,8 +138,11 @@ def _missed(example: TreeExample, scores: FloatArray) -> int:
 
 def write_edge_weights(weights: EdgeWeights, path: Path) -> None:
     """Write the file that `choice.edges.shipped_edge_weights` reads."""
-    arrays = {key: [round(float(value), 6) for value in getattr(weights, key)] for key in ("mean", "scale", "weights")}
-    stored = {"format": FORMAT, "measurements": weights.measurements, **arrays, "provenance": dict(weights.provenance)}
+    stored = {
+        "weights": {name: round(float(value), 6) for name, value in zip(MEASUREMENTS, weights.weights, strict=True)},
+        "offset": round(weights.offset, 6),
+        "provenance": dict(weights.provenance),
+    }
     path.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
 
 

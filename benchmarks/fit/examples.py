@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.contact.build_graph import build_contact_graph
+from kinematify.contact.graph import pair
 from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses, JointType
 from kinematify.joints.choice.decide import edge_features
-from kinematify.joints.choice.judge import alike_edges, rightness
+from kinematify.joints.choice.judge import rightness
 from kinematify.joints.choice.opening import measure_sides
-from kinematify.joints.features.edge_scene import part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import Cloud, PartCache, point_cloud
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class Example:
     by_cues: int
     """Position of what the weighted cues alone would choose."""
     alike: int
-    """The same number for edges of an object that are alike (`twins.alike_edges`), -1 for all others."""
+    """The same number for edges of an object that are alike (`AlikeParts.edges`)."""
     broken: bool = False
     """The object has pieces broken off; such edges teach what is fixed, not which joint is right."""
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
@@ -123,15 +124,14 @@ def examples_of(
     bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
     tree = KinematicTree(parents=tuple(truth.parents))
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
-    frames = part_frames(cache, tree, config.joints)
-    alike = alike_edges(graph, tree)
+    whole = TreeScenes(cache, tree, config.joints)
+    alike = graph.alike.edges(tree)
     found = []
     for edge in tree.edges():
         joints = [joint for joint in truth.joints if (joint.parent, joint.child) == edge]
         if not joints or (broken and joints[0].kind is not JointType.FIXED and edge[1] not in lessened):
             continue
-        bearing = bearings.get((min(edge), max(edge)))
-        features = edge_features(cache, tree, frames, edge, bearing, config=config.joints)
+        features = edge_features(whole.scene(edge, bearings.get(pair(*edge))))
         hypotheses, size = features.hypotheses, features.scene.frame.diagonal
         near = cache.samples(edge[1]).points.mean(axis=0)
         judged = [_rightness(hypotheses, joint, near, size) for joint in joints]
@@ -154,7 +154,7 @@ def examples_of(
                 types_right=same.astype(np.int64),
                 cloud=point_cloud(cache, *edge, features.scene.others, size),
                 by_cues=features.by_cues,
-                alike=next((number for number, group in enumerate(alike) if edge in group), -1),
+                alike=next(number for number, group in enumerate(alike) if edge in group),
                 broken=broken,
                 sides={} if broken else _sides(features.scene, joints[0]),
                 is_continuous=joints[0].upper - joints[0].lower > _WHOLE_TURN if joints[0].kind.turns else None,

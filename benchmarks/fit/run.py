@@ -13,10 +13,8 @@ from benchmarks.fit.corpora import (
     GENERATED,
     broken_sources,
     gather_examples,
-    gather_trees,
     generated_sources,
     real_sources,
-    tree_sources,
     with_spares,
 )
 from benchmarks.fit.cross_validation import (
@@ -24,7 +22,6 @@ from benchmarks.fit.cross_validation import (
     agreed_examples,
     calibration_of,
     cause_of,
-    judge_edges_left_out,
     judge_left_out,
     judge_opening_left_out,
     judge_origins_held_out,
@@ -35,7 +32,6 @@ from benchmarks.fit.cross_validation import (
     row_of,
     sets_of,
 )
-from benchmarks.fit.edges import edges_row, fit_edges, write_edge_weights
 from benchmarks.fit.trees import (
     Seeds,
     data_key,
@@ -53,21 +49,18 @@ from benchmarks.fit.trees import (
 )
 from kinematify import __version__
 from kinematify.evaluation.result_record import git_commit, table
-from kinematify.joints.choice.edges import EDGE_WEIGHTS
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS, shipped_scorer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from benchmarks.fit.edges import TreeExample
     from benchmarks.fit.examples import Example
-    from kinematify.joints.choice.edges import EdgeWeights
     from kinematify.robot.arrays import FloatArray
 
     Likely = Mapping[str, Mapping[int, FloatArray]]
 
-FIXED_HEAD, EDGES_HEAD, DESCRIBED_SET = "fixed", "edges", "described"
+FIXED_HEAD, DESCRIBED_SET = "fixed", "described"
 """What a fit can skip: weights that stay as they are, and objects that only judge."""
 _SEEDS = (0, 1, 2, 3)
 SHIPPED = Seeds(trees=_SEEDS, networks=(0, 1, 2, 3, 4, 5), points=(0, 1))
@@ -100,7 +93,7 @@ def run_fit(
         cache: Folder of what was measured and of held-out fits, so that an interrupted run goes on.
         per_category: Objects of each category of a folder that are fitted to; the others judge. None for all.
         hold_out: Folders of objects that are also judged by a fit that has nothing of any of them.
-        skip: Of `FIXED_HEAD`, `EDGES_HEAD` and `DESCRIBED_SET`: what is neither measured, fitted nor judged.
+        skip: Of `FIXED_HEAD` and `DESCRIBED_SET`: what is neither measured, fitted nor judged.
         progress: Called with what is done and the share of it.
 
     Returns:
@@ -114,16 +107,13 @@ def run_fit(
     sources = [source for source in sources if source.origin != DESCRIBED or DESCRIBED_SET not in skip]
     sources += [] if FIXED_HEAD in skip else broken_sources(sources)
     examples = gather_examples(sources, cache, seed=seed, workers=workers, progress=progress)
-    of_trees = [] if EDGES_HEAD in skip else tree_sources(sources)
-    trees = gather_trees(of_trees, cache / "trees", seed=seed, workers=workers, progress=progress)
     drawn = {"seed": seed, "rounds": rounds, "composed": composed, "per_category": per_category}
     examples = with_spares(examples, per_category)
-    return fit_and_judge(examples, trees, out, drawn=drawn, held_out=hold_out, skip=skip, progress=progress)
+    return fit_and_judge(examples, out, drawn=drawn, held_out=hold_out, skip=skip, progress=progress)
 
 
 def fit_and_judge(
     examples: Sequence[Example],
-    trees: Sequence[TreeExample],
     out: Path,
     *,
     drawn: Mapping[str, int | None],
@@ -160,9 +150,6 @@ def fit_and_judge(
         beside = fit(some, seeds=_SEEDS, provenance={})
         facts = {"joints": len(some), "fixed": sum(map(is_fixed, some)), "recipe": key(beside.measurements)}
         write_scorer(replace(beside, provenance={**provenance, **facts}), out / name)
-    edges = fit_edges([example for example in trees if example.fits], provenance)
-    if EDGES_HEAD not in skip:
-        write_edge_weights(edges, out / EDGE_WEIGHTS)
     likely = {"held out by category": judge_left_out(examples, progress, fits)}
     likely["held out with its source"] = judge_origins_held_out(examples, held_out, fits)
     before = shipped_scorer()
@@ -179,24 +166,10 @@ def fit_and_judge(
         else {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
         "opening": {name: asdict(row) for name, row in judge_opening_left_out(examples).items()},
         "turning": {name: asdict(row) for name, row in judge_turning_left_out(examples).items()},
-        "edges": _edges(trees, edges),
     }
     (out / "choice.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     (out / "choice.md").write_text(as_markdown(report), encoding="utf-8")
     return report
-
-
-def _edges(trees: Sequence[TreeExample], shipped: EdgeWeights) -> dict[str, Any]:
-    """True edges that the likeliest trees have, by set: held out by category, and with the weights that ship."""
-    left_out = judge_edges_left_out(trees)
-    found = {}
-    for name, index in sets_of(trees).items():
-        some = [trees[k] for k in index]
-        found[name] = {
-            "held out by category": asdict(left_out[name]),
-            "these weights, in-sample": asdict(edges_row(some, [shipped.scores(example.measured) for example in some])),
-        }
-    return found
 
 
 def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
@@ -247,14 +220,6 @@ def as_markdown(report: dict[str, Any]) -> str:
             f"{found['errors_in_least_sure']:.0%} of the errors. Mean confidence of each fifth, and share right: "
             f"{fifths}. Calibration error: {found['error']:.3f}."
         )
-    edges = [(name, by, row) for name, by_what in report["edges"].items() for by, row in by_what.items()]
-    if edges:
-        heading = ("set", "objects", "edges", "weighed by", "true edges found", "objects with all")
-        shown = [
-            (name, f"{row['objects']}", f"{row['edges']}", by, _percent(row["found"]), _percent(row["whole"]))
-            for name, by, row in edges
-        ]
-        blocks += ["Edges of the tree, whatever its root:", table(heading, shown)]
     for key, title, *what in (
         ("rigidity", "Whether a part is fixed", "pieces broken off", "moving parts"),
         ("opening", "Which way a turn opens, of the true line", "open one way", "others"),

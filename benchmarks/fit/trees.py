@@ -17,8 +17,17 @@ from benchmarks.fit.network import fit_network
 from benchmarks.fit.point_network import PARAMETERS as POINT_PARAMETERS
 from benchmarks.fit.point_network import fit_points
 from kinematify.errors import InputError
-from kinematify.joints.choice.opening import rigid_columns, side_columns, turning_columns
-from kinematify.joints.choice.scorer import FORMAT, NETWORK, POINTS, SUMMARIES, Scorer, base_columns, stacked
+from kinematify.joints.choice.opening import rigid_columns, side_columns
+from kinematify.joints.choice.scorer import (
+    FORMAT,
+    NETWORK,
+    POINTS,
+    SUMMARIES,
+    Scorer,
+    base_columns,
+    columns_of,
+    stacked,
+)
 from kinematify.joints.features.columns import CUES, VERDICTS
 from kinematify.versions import require
 
@@ -157,7 +166,9 @@ def turning_names(examples: Sequence[Example]) -> tuple[str, ...]:
 
 def turns_of(examples: Sequence[Example], names: Sequence[str]) -> NDArray[Any]:
     """What is measured of the hypothesis that fits each true turn best, shape (n, f)."""
-    return np.stack([turning_columns(example.measured, int(np.argmax(example.right)), names) for example in examples])
+    return np.stack(
+        [columns_of(item.measured, names, len(item.kinds))[int(np.argmax(item.right))] for item in examples]
+    )
 
 
 def turns_known(example: Example) -> bool:

@@ -15,6 +15,7 @@ from click.exceptions import NoSuchCommand
 
 from kinematify import __version__
 from kinematify.errors import ExitStatus, KinematifyError
+from kinematify.processes.start import keep_memory
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,6 +42,7 @@ COMMANDS = {
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and end the process with the exit status."""
+    keep_memory()
     sys.exit(run(arguments))
 
 

@@ -37,18 +37,8 @@ class BearingTwinsConfig(StageConfig):
 
     clear: float = 0.03  # chance lines of clean robots score up to 0.02
     """Where each contact of a group has a line of this score, nothing is shared."""
-    samples: int = 400  # spacing of 5 % of a part's size; a motion is exact to a tenth of that
-    """Points per part that are laid upon each other."""
-    tolerance: float = 0.045  # half as much again as for congruent parts: the samples are fewer
-    """Largest mean distance between them, fraction of the smaller part's diagonal."""
-    alike: float = 0.1  # walls that represent solids are half a cell thicker on each side
-    """Rough parts whose spreads along their principal axes differ by more are no twins, fraction of the largest."""
-    reach: float = 0.1  # contacts of rough meshes wander by a few percent of the part
-    """Contacts that lie farther apart after the motion are no twins, fraction of the part's diagonal."""
     slack: float = 3.0  # 6 deg and 1 % of the diagonal: what motions between rough meshes miss by
     """How far a line may move when it settles at a twin, in units of `apart_angle` and `apart`."""
-    most: int = 5  # more only repeat each other, and the cost grows with the square
-    """Twins that are asked about each contact."""
 
 
 class BearingConfig(StageConfig):

@@ -8,19 +8,17 @@ between triangles.
 from __future__ import annotations
 
 from functools import partial
-from itertools import permutations, product
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
+from kinematify.contact.alike import find_clusters, outline_of
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, Pair
-from kinematify.geometry.surface import FACETED
 from kinematify.processes.forked import each
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import box_gaps
+from kinematify.robot.vectors import box_gaps, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -76,8 +74,13 @@ def build_contact_graph(
         )
         for (pair, gap, side_a, side_b), strength in zip(raw, strengths, strict=True)
     )
-    clusters = find_clusters(assembly, surfaces, config=config, seed=seed)
-    return ContactGraph(n_parts=len(assembly.parts), edges=edges, clusters=clusters, tolerance=tolerance)
+    return ContactGraph(
+        n_parts=len(assembly.parts),
+        edges=edges,
+        clusters=find_clusters(assembly, surfaces, config=config, seed=seed),
+        tolerance=tolerance,
+        outlines=tuple(map(outline_of, surfaces)),
+    )
 
 
 def _strengths(
@@ -153,7 +156,7 @@ def _smallest_gaps(
     apart = np.maximum(
         bounds[inside, None, 0] - bounds[None, outside, 1], bounds[None, outside, 0] - bounds[inside, None, 1]
     )
-    lower_bound = np.linalg.norm(np.maximum(apart, 0), axis=2)
+    lower_bound = lengths_of(np.maximum(apart, 0))
     found: dict[Pair, float] = {}
     smallest = np.inf
     for flat in np.argsort(lower_bound, axis=None, kind="stable"):
@@ -220,84 +223,3 @@ def _mutual_area(side_a: ContactSamples, side_b: ContactSamples, reach: float) -
     near_a = float(side_a.areas[side_a.distances <= reach].sum())
     near_b = float(side_b.areas[side_b.distances <= reach].sum())
     return float(np.sqrt(near_a * near_b))
-
-
-_PROFILE_QUANTILES = np.linspace(0.02, 0.98, 9)
-_ROUGH = 1.5
-"""More of the tolerance for rough parts in the test by size: voxels of a tenth of a finger change it."""
-_AREAS = (0.04, 0.18)
-"""Most difference of areas of congruent parts, as a share; of rough ones. Base and lid of a laptop differ by .07."""
-
-
-def find_clusters(
-    assembly: Assembly, surfaces: Sequence[PartSurface], *, config: ContactConfig, seed: int
-) -> tuple[tuple[int, ...], ...]:
-    """Group congruent parts.
-
-    Args:
-        assembly: The parts.
-        surfaces: Derived geometry of each part, same order.
-        config: `cluster_samples` points per part, `cluster_tolerance` as a fraction of the part's diagonal.
-        seed: Seed of the samples.
-
-    Returns:
-        Groups of two or more part indices, each ascending, ordered by their first member.
-    """
-    shapes = [_centred_samples(surface, config.cluster_samples, seed) for surface in surfaces]
-    prints = np.array([_fingerprint(points) for points in shapes])
-    areas = np.array([surface.part.area for surface in surfaces])
-    sizes = np.array([np.linalg.norm(points, axis=1).max() for points in shapes])
-    rough = np.array([surface.roughness > FACETED for surface in surfaces])
-    alike = _alike(prints, areas, sizes, config.cluster_tolerance, rough[:, None] | rough)
-    labels = np.arange(len(surfaces))
-    for a, b in zip(*np.nonzero(np.triu(alike, k=1)), strict=True):
-        limit = config.cluster_tolerance * 2 * max(sizes[a], sizes[b])
-        # Only the groups matter: what others have joined already needs no comparison of its own.
-        if labels[a] != labels[b] and aligned_chamfer(shapes[a], shapes[b], enough=limit) <= limit:
-            labels[labels == labels[b]] = labels[a]
-    groups = [tuple(np.flatnonzero(labels == label).tolist()) for label in np.unique(labels)]
-    return tuple(sorted(group for group in groups if len(group) > 1))
-
-
-def aligned_chamfer(first: FloatArray, second: FloatArray, *, enough: float = 0.0) -> float:
-    """Mean nearest-neighbour distance [m], both ways, of two centred clouds after the best alignment of their axes.
-
-    Principal axes are tried with all signs and, since equal spreads leave their order open, all orders, so mirrored
-    twins match. Clouds of shape (n, 3) and (m, 3). The first alignment that is at most `enough` apart ends the search.
-    """
-    one, other = first @ _principal_axes(first), second @ _principal_axes(second)
-    tree_of_one, tree_of_other = cKDTree(one), cKDTree(other)
-    best = np.inf
-    for order in permutations(range(3)):
-        for signs in product((1.0, -1.0), repeat=3):
-            there = float(tree_of_one.query(other[:, order] * signs)[0].mean())
-            if there < 2 * best:  # the way back can halve the mean at best
-                back = float(tree_of_other.query((one * signs)[:, np.argsort(order)])[0].mean())
-                best = min(best, 0.5 * (there + back))
-                if best <= enough:
-                    return best
-    return best
-
-
-def _centred_samples(surface: PartSurface, count: int, seed: int) -> FloatArray:
-    points = surface.sample(count, seed=seed).points
-    return points - surface.part.centroid if len(points) else np.zeros((1, 3))
-
-
-def _fingerprint(points: FloatArray) -> FloatArray:
-    """Quantiles of the distance from the centroid and the principal spreads [m], shape (12,)."""
-    radii = np.quantile(np.linalg.norm(points, axis=1), _PROFILE_QUANTILES)
-    spreads = np.sqrt(np.maximum(np.linalg.eigvalsh(points.T @ points / len(points)), 0))
-    return np.concatenate([radii, spreads])
-
-
-def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: float, rough: BoolArray) -> BoolArray:
-    """Matrix of pairs that may be congruent within a tolerance; `rough` where one of a pair is; all of shape (n, n)."""
-    scale = _ROUGH**rough * np.maximum(sizes[:, None], sizes)
-    difference = np.abs(prints[:, None] - prints).max(axis=2)
-    least = (1 - np.where(rough, _AREAS[1], _AREAS[0])) * np.maximum(areas[:, None], areas)
-    return np.asarray((difference <= 2.5 * tolerance * scale) & (np.minimum(areas[:, None], areas) > least))
-
-
-def _principal_axes(points: FloatArray) -> FloatArray:
-    return np.linalg.eigh(points.T @ points)[1]

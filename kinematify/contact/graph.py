@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kinematify.contact.alike import AlikeParts
+
 if TYPE_CHECKING:
+    from kinematify.contact.alike import Outline
     from kinematify.robot.arrays import FloatArray
 
 
@@ -61,6 +64,8 @@ class ContactGraph:
     """Groups of two or more congruent parts (up to mirroring), ascending; singletons are omitted."""
     tolerance: float
     """Largest gap that counts as contact [m]."""
+    outlines: tuple[Outline, ...] = ()
+    """Of every part, to be laid upon each other."""
 
     @cached_property
     def by_pair(self) -> dict[Pair, ContactEdge]:
@@ -77,10 +82,6 @@ class ContactGraph:
         return tuple(tuple(sorted(items)) for items in sets)
 
     @cached_property
-    def cluster_of(self) -> tuple[int, ...]:
-        """Index into `clusters` for every part, -1 for a part without twin."""
-        label = [-1] * self.n_parts
-        for index, cluster in enumerate(self.clusters):
-            for part in cluster:
-                label[part] = index
-        return tuple(label)
+    def alike(self) -> AlikeParts:
+        """Which parts are alike, and by which motions."""
+        return AlikeParts(self.n_parts, self.clusters, self.outlines)

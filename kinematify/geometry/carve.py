@@ -152,9 +152,8 @@ class _Polytope:
         marks = self.marks[self.marks @ normal >= offset]
         faces = self.piece.faces
         following = faces[:, [1, 2, 0]]
-        crossing = heights[faces] * heights[following] < 0.0
-        ends = np.stack([faces[crossing], following[crossing]])
-        edges = np.unique(ends.min(axis=0) * len(self.vertices) + ends.max(axis=0))  # two faces share each
+        crossing = (heights[faces] * heights[following] < 0.0) & (faces < following)  # each edge has a face either way
+        edges = np.sort(faces[crossing] * len(self.vertices) + following[crossing])
         one, other = np.divmod(edges, len(self.vertices))
         share = (heights[one] / (heights[one] - heights[other]))[:, None]
         first, second = self.vertices[one], self.vertices[other]
@@ -351,8 +350,10 @@ class _Carver:
             if kept is None or kept.piece.volume < least:
                 break
             found.append(kept)
+            if kept is whole or whole.piece.volume - kept.piece.volume < 0.5 * least:  # sure without a hull
+                break
             beyond = whole.clipped(-normal, -offset, self._thinnest)
-            if kept is whole or beyond is None or beyond.piece.volume < least:
+            if beyond is None or beyond.piece.volume < least:
                 break
             steps = self._meets(*((beyond, obstacle) if backwards else (obstacle, beyond)), clearance)
             if not len(steps):
@@ -474,7 +475,7 @@ class _Path:
             return self._arc * self._sweep.radius(piece.vertices)
         track = self._track(piece, backwards=piece.body not in self._sweep.moved)
         bends = [np.diff(part, n=2, axis=0) for part in (track[: self._down], track[self._down :])]
-        return max(float(np.linalg.norm(bend, axis=2).max(initial=0.0)) for bend in bends) / 8.0
+        return max(float(lengths_of(bend).max(initial=0.0)) for bend in bends) / 8.0
 
 
 def _support(normals: FloatArray, points: FloatArray) -> FloatArray:

@@ -18,6 +18,7 @@ import numpy as np
 
 from kinematify.geometry.convex import ConvexPiece, convex_piece, outermost, surface_points
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
+from kinematify.processes.forked import each
 from kinematify.robot.vectors import lengths_of, triangle_normals
 from kinematify.robot.weld import snapped
 
@@ -44,6 +45,8 @@ _RIND = 0.01
 """Planes nearer to the end of a piece are moved there, fraction of its extent: walls may have no thickness."""
 _HOLES = 0.02
 """Share of open edges, and of the area that is missing, up to which a surface is closed."""
+_AT_ONCE = 2
+"""Cuts of different surfaces, so that two processes share them; the second is for nothing when cuts are spent."""
 _PATIENCE = 16
 """Cuts after which the largest gap of a surface must have become smaller."""
 _NEARLY = 0.9
@@ -184,6 +187,8 @@ class _Cutting:
         self._best = self._whole.gap
         self._finished: list[Chunk] = []
         self._queue = [self._whole]
+        self.ahead: list[Chunk] | None = None
+        """Result of the next cut, where it is known already."""
 
     @property
     def chunks(self) -> list[Chunk]:
@@ -196,11 +201,20 @@ class _Cutting:
         gap = max((chunk.gap for chunk in self._queue), default=0.0)
         return gap if gap > self._body.tolerance else 0.0
 
+    @property
+    def following(self) -> Chunk:
+        """The worst chunk, which is cut next."""
+        return max(self._queue, key=lambda item: item.gap)
+
+    def next_cut(self) -> list[Chunk]:
+        """Return what the next cut makes; nothing changes."""
+        return _best_cut(self._body, self.following)
+
     def cut(self) -> None:
         """Cut the worst chunk; stop where that has not helped for a while, and start from the whole if it never has."""
-        chunk = max(self._queue, key=lambda item: item.gap)
+        sides, chunk = self.ahead or [], self.following
+        self.ahead = None
         self._queue.remove(chunk)
-        sides = _best_cut(self._body, chunk)
         self._queue += sides
         self._finished += [] if sides else [chunk]
         self._cuts += 1
@@ -227,6 +241,12 @@ def cut_worst_first(bodies: Sequence[Concave], cuts: int) -> list[list[Chunk]]:
         worst = max(cutting, key=lambda item: item.worst)
         if worst.worst == 0.0:
             break
+        if worst.ahead is None:
+            waiting = sorted(
+                (item for item in cutting if item.worst and item.ahead is None), key=lambda item: -item.worst
+            )
+            for item, sides in zip(waiting, each(_Cutting.next_cut, waiting[:_AT_ONCE]), strict=False):
+                item.ahead = sides
         worst.cut()
     return [item.chunks for item in cutting]
 

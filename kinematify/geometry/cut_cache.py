@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.geometry.convex import ConvexPiece
 from kinematify.geometry.cut import ALONG, Chunk, cut_worst_first, face_levels, split
+from kinematify.processes.forked import each
 from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def convex_chunks(bodies: Sequence[Concave], cuts: int) -> list[list[Chunk]]:
     Returns:
         The chunks of each.
     """
-    found = [split_by_boards(body, min(_MOST, cuts)) for body in bodies]
+    found = each(lambda body: split_by_boards(body, min(_MOST, cuts)), bodies)
     rest = iter(cut_worst_first([b for b, chunks in zip(bodies, found, strict=True) if chunks is None], cuts))
     return [next(rest) if chunks is None else chunks for chunks in found]
 

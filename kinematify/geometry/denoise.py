@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import dots, lengths_of
+from kinematify.robot.vectors import crossed, dots, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -36,7 +36,7 @@ def bends_both_ways(centres: FloatArray, normals: FloatArray, areas: FloatArray,
         return 0.0
     first, second = pairs[:, 0], pairs[:, 1]
     across = centres[second] - centres[first]
-    bend = lengths_of(np.cross(normals[first], normals[second])) > _BEND
+    bend = lengths_of(crossed(normals[first], normals[second])) > _BEND
     concave = dots(across, normals[first] - normals[second]) > 0
     ways = []
     for chosen in (bend & concave, bend & ~concave):

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import lengths_of, referenced, triangle_normals
+from kinematify.robot.vectors import crossed, lengths_of, referenced, triangle_normals
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
@@ -75,7 +75,7 @@ def part_stats(part: Part) -> PartStats:
     hull_volume, flat_bottom, flat_top = _hull_measures(part)
     hull_volume = max(hull_volume, floor)
     a, b, c = (part.vertices[part.faces[:, k]] - part.centroid for k in range(3))
-    by_divergence = abs(float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6))
+    by_divergence = abs(float(np.einsum("ij,ij->i", a, crossed(b, c)).sum() / 6))
     enclosed = by_divergence if _is_closed(part) else hull_volume
     return PartStats(
         centroid=part.centroid,
@@ -113,7 +113,7 @@ def _rests(corners: FloatArray, diagonal: float, footprint: float) -> bool:
     """
     height = corners[:, :, 2] - corners[:, :, 2].min()
     normals = triangle_normals(corners)
-    level = np.abs(normals[:, 2]) > _LEVEL * np.linalg.norm(normals, axis=1)
+    level = np.abs(normals[:, 2]) > _LEVEL * lengths_of(normals)
     lying = level & (height.max(axis=1) < _NEAR * diagonal)
     touching = np.concatenate([corners[lying].reshape(-1, 3), corners[height < _TOUCHES * diagonal]])[:, :2]
     try:

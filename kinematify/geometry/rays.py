@@ -88,6 +88,17 @@ class RayScene:
             barycentric=np.stack([1.0 - u - v, u, v], axis=1),
         )
 
+    def from_behind(self, origins: FloatArray, along: FloatArray) -> BoolArray:
+        """Tell which rays meet the back of a face first.
+
+        Args:
+            origins: World frame [m], shape (n, 3).
+            along: Unit, of all rays, shape (3,).
+        """
+        rays = self._local_rays(origins, np.broadcast_to(along, origins.shape))
+        # A ray that meets nothing has the last place, -1.
+        return np.asarray(np.append(self.face_normals @ along > 0.0, False)[self._tree.run(*rays)])
+
     def occluded(self, origins: FloatArray, directions: NDArray[np.floating], reach: float) -> BoolArray:
         """Tell which rays meet any surface within `reach` [m]; a surface on which a ray starts does not count.
 

@@ -123,16 +123,12 @@ class Solid:
         near = np.flatnonzero(all_three((points > self.low) & (points < self.high)) & bool(len(self.shells.closed)))
         if len(near):
             local = self._local(points[near])
-            first[near], second[near] = (self._meets_from_behind(local, along) for along in (_ASKEW, -_ASKEW))
+            first[near], second[near] = (self._closed_rays.from_behind(local, along) for along in (_ASKEW, -_ASKEW))
         return first & second, first ^ second
 
     def _is_wound(self, points: FloatArray) -> BoolArray:
         """Test whether points are inside by the winding number, which is slow; rays disagree in shells that overlap."""
         return np.asarray(np.abs(self._winding.numbers(self._local(points))) > 0.5)
-
-    def _meets_from_behind(self, local: FloatArray, along: FloatArray) -> BoolArray:
-        hits = self._closed_rays.first_hits(local, np.broadcast_to(along, local.shape))
-        return np.asarray(hits.met & (self._closed_rays.face_normals[hits.face] @ along > 0.0))
 
     def beside_sheets(self, points: FloatArray) -> FloatArray:
         """Distance of points from the sheets [m], body frame (n, 3) -> (n,); 0 where a rim is nearest.

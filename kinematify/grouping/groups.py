@@ -18,7 +18,7 @@ from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
 from kinematify.robot.appearance import joined
 from kinematify.robot.exact_faces import joined_faces
-from kinematify.robot.vectors import as_one
+from kinematify.robot.vectors import as_one, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -437,9 +437,9 @@ def assign_fragments(parts: Sequence[Part], size: float) -> IntArray:
     high = np.array([parts[k].bounds[1] for k in large])
     for k in np.flatnonzero(diagonals < size).tolist():
         middle = parts[k].bounds.mean(axis=0)
-        gaps = np.linalg.norm(np.maximum(np.maximum(low - middle, middle - high), 0.0), axis=1)
+        gaps = lengths_of(np.maximum(np.maximum(low - middle, middle - high), 0.0))
         near = np.flatnonzero(gaps <= gaps.min() + size).tolist()
-        reach = [float(np.linalg.norm(parts[large[n]].vertices - middle, axis=1).min()) for n in near]
+        reach = [float(lengths_of(parts[large[n]].vertices - middle).min()) for n in near]
         owner[k] = large[near[int(np.argmin(reach))]]
     return owner
 

@@ -66,20 +66,16 @@ def joined(*some: Hypotheses) -> Hypotheses:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class JointCandidate:
-    """A hypothesis of how one part moves against another; world frame, input configuration = zero."""
+class JointLine:
+    """Type and line of a joint of one part against another; world frame, q = 0 is the input configuration."""
 
     kind: JointType
     axis: FloatArray
-    """Unit direction in the world frame, shape (3,); sign is not yet meaningful. Read-only."""
+    """Unit direction in the world frame, shape (3,). Read-only."""
     pivot: FloatArray
     """A point on the axis, world frame [m], shape (3,). Read-only."""
-    score: float
-    """Higher is better; comparable among the candidates of one edge."""
-    source: str
-    """Generator that proposed it, e.g. ``bearing``, ``pca``, ``box_edge``."""
     evidence: Mapping[str, float] = field(default_factory=dict)
-    """Named measurements behind the score."""
+    """Named measurements behind it."""
 
     def __post_init__(self) -> None:
         axis = np.asarray(self.axis, dtype=np.float64)
@@ -89,16 +85,21 @@ class JointCandidate:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class JointEstimate:
-    """The joint chosen for a directed tree edge; world frame, q = 0 is the input configuration."""
+class JointCandidate(JointLine):
+    """A hypothesis; the sign of its axis is not yet meaningful."""
+
+    score: float
+    """Higher is better; comparable among the candidates of one edge."""
+    source: str
+    """Generator that proposed it, e.g. ``bearing``, ``pca``, ``box_edge``."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointEstimate(JointLine):
+    """The joint chosen for a directed tree edge; its axis is signed so that q > 0 opens it."""
 
     parent: int
     child: int
-    kind: JointType
-    axis: FloatArray
-    """Unit direction in the world frame, shape (3,), signed so that q > 0 opens the joint. Read-only."""
-    pivot: FloatArray
-    """A point on the axis, world frame [m], shape (3,). Read-only."""
     lower: float
     """Lower limit [rad if it turns, m if it slides]; 0 for fixed, -inf for continuous."""
     upper: float
@@ -109,13 +110,8 @@ class JointEstimate:
     """What ends the range at `lower` and at `upper`, in words; empty where nothing does or it is not known."""
     alternatives: tuple[JointCandidate, ...] = ()
     """Every candidate that was kept, best first, the chosen one included."""
-    evidence: Mapping[str, float] = field(default_factory=dict)
-    """Named measurements behind type, direction and limits."""
 
     def __post_init__(self) -> None:
-        axis = np.asarray(self.axis, dtype=np.float64)
-        object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
-        object.__setattr__(self, "pivot", read_only(self.pivot, np.float64))
-        object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
+        super().__post_init__()
         if self.kind in (JointType.FIXED, JointType.CONTINUOUS):
             object.__setattr__(self, "stops", ("", ""))

@@ -22,6 +22,7 @@ from kinematify.manipulation.grasp_search import (
 )
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import pose_at
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -204,9 +205,9 @@ class _Ranked:
             middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
             centred = found.center - np.outer(found.center @ self.axis, self.axis) - middle
             motion = np.broadcast_to(self.sign * self.axis, found.center.shape)
-            return np.linalg.norm(centred, axis=1), _pull(found, motion)
-        radius = np.linalg.norm(across, axis=1)
-        motion = self.sign * np.cross(self.axis, across) / np.maximum(radius, 1e-9)[:, None]
+            return lengths_of(centred), _pull(found, motion)
+        radius = lengths_of(across)
+        motion = self.sign * crossed(self.axis, across) / np.maximum(radius, 1e-9)[:, None]
         # A knob is turned by twisting: the pads are the lever.
         twist = 0.5 * found.width * np.abs(found.approach @ self.axis)
         return np.maximum(radius, twist), np.where(twist > radius, 1.0, _pull(found, motion))
@@ -282,7 +283,7 @@ def _distinct(ranked: _Ranked, room: _Room, held: str, slack: float) -> list[Gra
 
 def _alike(found: Candidates, row: int) -> BoolArray:
     cosine = np.cos(np.radians(SAME_DEG))
-    near = np.linalg.norm(found.center - found.center[row], axis=1) < SAME_PLACE
+    near = lengths_of(found.center - found.center[row]) < SAME_PLACE
     same = (found.approach @ found.approach[row] > cosine) & (np.abs(found.closing @ found.closing[row]) > cosine)
     return np.asarray(near & same)
 
@@ -299,7 +300,7 @@ def _around(point: FloatArray, seed: int) -> FloatArray:
     """Places in the ball around a point, the point itself first, shape (n, 3)."""
     rng = np.random.default_rng(seed)
     offsets = rng.normal(size=(POINTS_SEEN, 3))
-    offsets *= NEAR_POINT * rng.random((len(offsets), 1)) / np.linalg.norm(offsets, axis=1)[:, None]
+    offsets *= NEAR_POINT * rng.random((len(offsets), 1)) / lengths_of(offsets)[:, None]
     return np.concatenate([point[None], point + offsets])
 
 

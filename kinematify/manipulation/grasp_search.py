@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.robot.transforms import rotation_about, transformed
-from kinematify.robot.vectors import triangle_normals
+from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -119,7 +119,7 @@ class GraspSearch:
         vertices, faces = self.meshes[self.body]
         corners = vertices[faces]
         cross = triangle_normals(corners)
-        areas = 0.5 * np.linalg.norm(cross, axis=1)
+        areas = 0.5 * lengths_of(cross)
         solid = areas > 0.0
         corners, areas, cross = corners[solid], areas[solid], cross[solid]
         side = _sides(faces[solid], cross, len(vertices))
@@ -133,7 +133,7 @@ class GraspSearch:
         axes = main_directions(vertices, faces)
         signs = [np.array([i, j, k]) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
         chosen = np.array([sign for sign in signs if 1 <= np.abs(sign).sum() <= 2], dtype=np.float64)
-        return np.asarray(chosen / np.linalg.norm(chosen, axis=1)[:, None] @ axes)
+        return np.asarray(chosen / lengths_of(chosen)[:, None] @ axes)
 
     def candidates(self, places: FloatArray, opening: float) -> tuple[Candidates, tuple[int, int, int]]:
         """Look at places (n, 3) along all approach and closing directions.
@@ -236,12 +236,12 @@ def main_directions(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Three perpendicular unit directions that most of the surface of a body faces, rows, shape (3, 3)."""
     corners = vertices[faces]
     cross = triangle_normals(corners)
-    areas = np.linalg.norm(cross, axis=1)
+    areas = lengths_of(cross)
     normals = cross[areas > 0.0] / areas[areas > 0.0, None]
     areas = areas[areas > 0.0]
     first = _commonest(normals, areas)
     flat = normals - np.outer(normals @ first, first)
-    length = np.linalg.norm(flat, axis=1)
+    length = lengths_of(flat)
     across = length > np.cos(np.radians(30.0))
     if across.any():
         second = _commonest(flat[across] / length[across, None], areas[across])
@@ -270,7 +270,7 @@ def _sides(faces: IntArray, cross: FloatArray, points: int) -> IntArray:
         shape=(points, points),
     )
     _, piece = connected_components(links, directed=False)
-    cells = np.round(cross / np.linalg.norm(cross, axis=1)[:, None] * _COARSE_NORMAL / 2.0).astype(np.int64)
+    cells = np.round(cross / lengths_of(cross)[:, None] * _COARSE_NORMAL / 2.0).astype(np.int64)
     _, side = np.unique(np.c_[piece[faces[:, 0]], cells], axis=0, return_inverse=True)
     return np.asarray(side.reshape(-1))
 

@@ -289,9 +289,11 @@ class _ExactSweeps:
     def _end(self, leader: int, pair: Pair, sign: float) -> float:
         travel = self._scene.travels[leader]
         swept = self._swept.get(travel.joint)
-        if swept and pair not in {item.pair for item in swept.sides[sign > 0.0].meetings if item.inside}:
-            return sign * np.inf
-        meeting = self._sweeper.meeting(leader, pair, sign)
+        meeting = (
+            next((item for item in swept.sides[sign > 0.0].meetings if item.inside and item.pair == pair), None)
+            if swept
+            else self._sweeper.meeting(leader, pair, sign)
+        )
         if meeting is None or meeting.depth <= self._forced:
             return sign * np.inf
         self.blocked.append(
@@ -483,7 +485,7 @@ def _box_axes(piece: ConvexPiece) -> FloatArray | None:
     along = piece.vertices @ axes.T
     low, high = along.min(axis=0), along.max(axis=0)
     corners = low + _BOX_CORNERS * (high - low)
-    farthest = np.linalg.norm(along[:, None] - corners[None], axis=2).min(axis=0).max()
+    farthest = lengths_of(along[:, None] - corners[None]).min(axis=0).max()
     return axes if farthest <= _SQUARE * float(np.linalg.norm(high - low)) else None
 
 

@@ -17,7 +17,7 @@ from kinematify.geometry.scene import judged_shapes
 from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import transformed
-from kinematify.robot.vectors import as_one, lengths_of, referenced
+from kinematify.robot.vectors import as_one, crossed, lengths_of, referenced
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -166,7 +166,7 @@ def _inside(points: FloatArray, hull: ConvexPiece) -> bool:
     if np.any(points.min(axis=0) < hull.low) or np.any(points.max(axis=0) > hull.high):
         return False
     a, b, c = (hull.vertices[hull.faces[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
+    normals = crossed(b - a, c - a)
     return bool(np.all(points @ normals.T <= np.einsum("ij,ij->i", a, normals)))
 
 

@@ -12,7 +12,7 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.robot.robot import Inertial, rigid_groups
-from kinematify.robot.vectors import as_one, referenced, triangle_normals
+from kinematify.robot.vectors import as_one, crossed, lengths_of, referenced, triangle_normals
 from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def _walls(part: Part) -> _Solid:
     """Moments of the surface: its area takes the place of the volume [m^2]. Exact, by the middles of the edges."""
     corners = part.vertices[part.faces]
     crosses = triangle_normals(corners)
-    areas = 0.5 * np.linalg.norm(crosses, axis=1)
+    areas = 0.5 * lengths_of(crosses)
     points = 0.5 * (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3)
     weights = np.repeat(areas / 3.0, 3)
     area = float(areas.sum())
@@ -103,7 +103,7 @@ def _integrate(vertices: FloatArray, faces: IntArray) -> _Solid:
     """Sum signed tetrahedra between the faces and a reference point inside the bounds."""
     reference = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     a, b, c = (vertices[faces[:, k]] - reference for k in range(3))
-    six_volumes = np.einsum("ij,ij->i", a, np.cross(b, c))
+    six_volumes = np.einsum("ij,ij->i", a, crossed(b, c))
     total = a + b + c
     volume = float(six_volumes.sum()) / 6.0
     first = six_volumes @ total / 24.0

@@ -164,8 +164,8 @@ class Inference:
         if not chains:
             return tree, ()
         pins = [SharedAxis(links=chain.parts, axis=chain.line.axis, pivot=chain.line.pivot) for chain in chains]
-        twins = [[self.assembly.names[part] for part in cluster] for cluster in self.graph.clusters]
-        model, closings = close_chains(tree, pins, twins, self.assembly.diagonal)
+        kind = dict(zip(self.assembly.names, self.graph.alike.kind.tolist(), strict=True))
+        model, closings = close_chains(tree, pins, kind, self.assembly.diagonal)
         closed = (replace(chain, closing=closing) for chain, closing in zip(chains, closings, strict=True))
         return model, tuple(closed)
 

@@ -81,7 +81,7 @@ class Closing:
 def close_chains(
     model: KinematicModel,
     pins: Sequence[SharedAxis],
-    twins: Sequence[Sequence[str]],
+    kind: Mapping[str, int],
     diagonal: float,
 ) -> tuple[KinematicModel, tuple[Closing, ...]]:
     """Write a loop joint for every shared pin that leaves its chain a motion, and make the chain's joints agree.
@@ -89,7 +89,7 @@ def close_chains(
     Args:
         model: A tree; zero is the pose as given.
         pins: What the tree leaves out, the surest first.
-        twins: Links that are congruent.
+        kind: One number for all links that are congruent.
         diagonal: Of the object [m].
         config: What counts as parallel, as exact and as closed.
 
@@ -104,9 +104,9 @@ def close_chains(
         names.append(None if rigid else loop.name)
         model = model if rigid else tried
     moving = [found for found in linkages(_unlimited(model, diagonal)) if found.driver is not None]
-    model = _same_way(model, moving, twins)
+    model = _same_way(model, moving, kind)
     moving = [found for found in linkages(_unlimited(model, diagonal)) if found.driver is not None]
-    ranges = _alike(model, moving, [_range(model, found, diagonal) for found in moving], twins)
+    ranges = _alike(model, moving, [_range(model, found, diagonal) for found in moving], kind)
     closing: dict[str, Closing] = {}
     for linkage, ends in zip(moving, ranges, strict=True):
         model, found = _moving_as_one(model, linkage, ends, diagonal)
@@ -168,15 +168,15 @@ def _of(model: KinematicModel, pin: SharedAxis, joints: Sequence[str]) -> bool:
     return bool(moved & set(pin.links))
 
 
-def _same_way(model: KinematicModel, moving: Sequence[Linkage], twins: Sequence[Sequence[str]]) -> KinematicModel:
+def _same_way(model: KinematicModel, moving: Sequence[Linkage], kind: Mapping[str, int]) -> KinematicModel:
     """Make joints of parallel arms that are congruent with the driver's turn about its axis, not about its opposite."""
     joints = {joint.name: joint for joint in model.joints}
     for linkage in moving:
         driver = joints[linkage.driver or ""]
-        alike = {name for cluster in twins if driver.child in cluster for name in cluster}
         for name in linkage.joints:
             joint = joints[name]
-            if joint.child in alike and joint.kind.turns and float(joint.axis @ driver.axis) < -_ALONG:
+            alike = kind[joint.child] == kind[driver.child]
+            if alike and joint.kind.turns and float(joint.axis @ driver.axis) < -_ALONG:
                 joints[name] = replace(joint, axis=0.0 - joint.axis, lower=-joint.upper, upper=-joint.lower)
     return replace(model, joints=tuple(joints.values()))
 
@@ -185,14 +185,12 @@ def _alike(
     model: KinematicModel,
     moving: Sequence[Linkage],
     ranges: Sequence[tuple[float, float]],
-    twins: Sequence[Sequence[str]],
+    kind: Mapping[str, int],
 ) -> list[tuple[float, float]]:
     """Give linkages of congruent parts one range, that in which all of them are free."""
-    label = {name: number for number, cluster in enumerate(twins) for name in cluster}
     found = list(ranges)
     for one, other in combinations(range(len(ranges)), 2):
-        kinds = [_kind(model, moving[k], label) for k in (one, other)]
-        if kinds[0] is None or kinds[0] != kinds[1]:
+        if _kinds(model, moving[one], kind) != _kinds(model, moving[other], kind):
             continue
         (low, high), (a, b) = found[one], found[other]
         sign, shared = max(
@@ -205,10 +203,9 @@ def _alike(
     return found
 
 
-def _kind(model: KinematicModel, linkage: Linkage, label: Mapping[str, int]) -> tuple[int, ...] | None:
-    """Which shapes a linkage moves; None where one of them has no twin."""
-    children = [joint.child for joint in model.joints if joint.name in linkage.joints]
-    return tuple(sorted(label[child] for child in children)) if all(child in label for child in children) else None
+def _kinds(model: KinematicModel, linkage: Linkage, kind: Mapping[str, int]) -> list[int]:
+    """Which shapes a linkage moves."""
+    return sorted(kind[joint.child] for joint in model.joints if joint.name in linkage.joints)
 
 
 def _moving_as_one(

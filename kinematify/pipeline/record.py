@@ -74,7 +74,7 @@ def write_inference_files(
         report("drawing the picture", 0.7)
         from kinematify.render.model_picture import render_preview  # noqa: PLC0415 - a third of a second
 
-        render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
+        render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview, model.robot)
 
 
 def file_hashes(folder: Path) -> dict[str, str]:
@@ -148,8 +148,8 @@ def _bearing(line: BearingLine) -> dict[str, Any]:
         "axis": line.axis.tolist(),
         "pivot": line.pivot.tolist(),
         "score": line.score,
-        "surface": [line.surface_a, line.surface_b],
-        "circles": [line.circles_a, line.circles_b],
+        "surface": [*line.surfaces],
+        "circles": [*line.rings],
     }
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.topology.edge_evidence import EdgeEvidence
+    from kinematify.topology.edge_evidence import TreeEvidence
     from kinematify.topology.reward import SimulatedEdges
 
 
@@ -42,7 +42,7 @@ def find_trees(
 ) -> tuple[KinematicTree, ...]:
     """The best kinematic trees of an assembly; arguments as in `rank_trees`."""
     stats = assembly_stats(assembly)
-    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config))
+    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, stats, bearings, config))
     return rank_trees(
         graph, stats, evidence, config.topology, seed=config.seed, base=base, simulated=simulated, warm=warm
     )
@@ -53,7 +53,7 @@ def tree_reward(
 ) -> TreeReward:
     """Return what trees of an assembly are worth under the configuration."""
     stats = assembly_stats(assembly)
-    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config))
+    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, stats, bearings, config))
     return _reward_class(config.topology)(graph, stats, evidence, config.topology)
 
 
@@ -64,7 +64,7 @@ def _reward_class(config: TopologyConfig) -> type[TreeReward]:
 def rank_trees(
     graph: ContactGraph,
     stats: Sequence[PartStats],
-    evidence: Mapping[Pair, EdgeEvidence],
+    evidence: TreeEvidence,
     config: TopologyConfig,
     *,
     seed: int,
@@ -77,7 +77,7 @@ def rank_trees(
     Args:
         graph: Contacts, bridges and clusters of congruent parts.
         stats: Size and support of every part, world frame, z up.
-        evidence: Best joint of each contact edge, keyed (a, b) with a < b.
+        evidence: Of its edges.
         config: Mode, reward, base rule and budget.
         seed: Seed of the search; it only breaks ties.
         base: Index of the base link where it is known.

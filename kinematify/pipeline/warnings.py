@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.joints.choice.congruent_joints import TwinJoints
-from kinematify.joints.choice.judge import alike_edges
+from kinematify.pipeline.congruent_joints import carried
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
+    from kinematify.contact.alike import AlikeParts
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
@@ -43,7 +43,7 @@ def warnings_of(
         *floating_parts(assembly, graph, trees[0]),
         *_compound_joints(assembly, joints, graph),
         *_followed_twins(assembly, joints, bearings),
-        *unlike_twins(assembly, graph, trees[0], joints, config),
+        *unlike_twins(assembly, graph, trees[0], joints),
         *missed_linkages(assembly, graph, bearings, joints, config),
     )
 
@@ -119,7 +119,7 @@ def floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree)
 
 def _compound_joints(assembly: Assembly, joints: Sequence[JointEstimate], graph: ContactGraph) -> list[str]:
     """Tell of joints that are one mechanism together."""
-    found = compounds(assembly, joints, graph.clusters)
+    found = compounds(assembly, joints, graph.alike)
     return [described(compound, assembly.names) for compound in found]
 
 
@@ -144,12 +144,11 @@ _SAME_END, _SAME_PLACE = 0.1, 0.02  # shares of the wider range and of the part'
 
 
 def unlike_twins(
-    assembly: Assembly, graph: ContactGraph, tree: KinematicTree, joints: Sequence[JointEstimate], config: Config
+    assembly: Assembly, graph: ContactGraph, tree: KinematicTree, joints: Sequence[JointEstimate]
 ) -> list[str]:
     """Warn of congruent parts with mirrored or repeated contacts whose joints differ, and name what they differ in."""
-    twins, joint_of = TwinJoints(assembly, graph, config.bearing, seed=config.seed), {j.child: j for j in joints}
-    said = []
-    for group in alike_edges(graph, tree):
+    joint_of, said = {joint.child: joint for joint in joints}, []
+    for group in graph.alike.edges(tree):
         alike = [joint_of[child] for _, child in group]
         model = max(alike, key=lambda joint: joint.confidence)
         unlike: dict[str, list[str]] = {}
@@ -157,7 +156,7 @@ def unlike_twins(
             # What is the same as it stands needs no motion, which takes longer to find.
             if joint is not model and _difference(model, joint, math.inf):
                 size = assembly.parts[joint.child].diagonal
-                found = [_difference(item, joint, size) for item in twins.carried(model, joint)]
+                found = [_difference(item, joint, size) for item in carried(assembly, graph, model, joint)]
                 if found and all(found):
                     unlike.setdefault(found[0], []).append(assembly.names[joint.child])
         said += [
@@ -225,9 +224,7 @@ class Compound:
     """Indices of the parts that the joints move, from the base outward."""
 
 
-def compounds(
-    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]]
-) -> tuple[Compound, ...]:
+def compounds(assembly: Assembly, joints: Sequence[JointEstimate], alike: AlikeParts) -> tuple[Compound, ...]:
     """Find joints that are one mechanism together, which a tree of single joints cannot say.
 
     A cross between two forks makes a universal joint, three axes through one point make a ball joint, two fingers that
@@ -236,7 +233,7 @@ def compounds(
     Args:
         assembly: The parts, world frame.
         joints: The chosen joints of the tree.
-        clusters: Parts that are congruent, by index.
+        alike: Which parts are congruent.
 
     Returns:
         Ball joints first, then universal ones that are no piece of a ball joint, then pairs of fingers, then caps.
@@ -257,7 +254,7 @@ def compounds(
         and _one_point((first, second), near)
         and _is_cross(assembly, first, second)
     ]
-    return (*balls, *universals, *_fingers(assembly, joints, clusters))
+    return (*balls, *universals, *_fingers(assembly, joints, alike))
 
 
 def described(compound: Compound, names: Sequence[str]) -> str:
@@ -300,19 +297,12 @@ def _is_cross(assembly: Assembly, first: JointEstimate, second: JointEstimate) -
     return all(middle.diagonal < _CROSS * end.diagonal for end in ends)
 
 
-def _fingers(
-    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]]
-) -> Iterator[Compound]:
+def _fingers(assembly: Assembly, joints: Sequence[JointEstimate], alike: AlikeParts) -> Iterator[Compound]:
     """Congruent parts that carry nothing and slide towards each other on one body."""
-    label = {part: index for index, cluster in enumerate(clusters) for part in cluster}
     bearing = {joint.parent for joint in joints}
-    leaves = [
-        joint
-        for joint in joints
-        if joint.kind is JointType.PRISMATIC and joint.child not in bearing and joint.child in label
-    ]
+    leaves = [joint for joint in joints if joint.kind is JointType.PRISMATIC and joint.child not in bearing]
     for one, other in combinations(leaves, 2):
-        twins = one.parent == other.parent and label[one.child] == label[other.child]
+        twins = one.parent == other.parent and alike.kind[one.child] == alike.kind[other.child]
         if twins and float(one.axis @ other.axis) < -1.0 + _SQUARE and _face(assembly, one, other):
             yield Compound(kind=CompoundKind.FINGERS, children=(one.child, other.child))
 

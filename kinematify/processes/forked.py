@@ -32,8 +32,7 @@ _WORK: ContextVar[Callable[[int], Any]] = ContextVar("work")
 def using_processes(jobs: int | None) -> Iterator[None]:
     """Let loops inside use so many processes, as many as there are cores if absent; a worker of a pool uses one."""
     count = jobs or os.cpu_count() or 1
-    if count > 1:
-        _keep_embree_alone()
+    _keep_embree_alone()
     token = _JOBS.set(count)
     try:
         yield

@@ -19,7 +19,7 @@ from multiprocessing import connection
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar
 
-from kinematify.processes.start import ONE_THREAD, deaf, ensure_server
+from kinematify.processes.start import ONE_THREAD, deaf, ensure_server, keep_memory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
@@ -254,6 +254,7 @@ def _serve(
     faulthandler.disable()  # the caller tells of a crash
     gc.freeze()  # what was imported before is looked through no more, and stays shared with it
     os.environ.update(environment)
+    keep_memory()
     _CALLERS.append(channel)
     if session:
         os.setsid()  # a hang is stopped with all that it has started

@@ -6,6 +6,7 @@ else a server.
 
 from __future__ import annotations
 
+import ctypes
 import multiprocessing
 import os
 import signal
@@ -23,6 +24,19 @@ if TYPE_CHECKING:
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """Variables of workers: one thread per library, as there are as many workers as cores."""
+
+
+_MMAP_THRESHOLD, _TRIM_THRESHOLD = -3, -1
+"""Numbers of glibc's options (mallopt(3))."""
+_KEPT = 1 << 29
+"""Memory that a process keeps at most when it is freed [bytes]."""
+
+
+def keep_memory() -> None:
+    """Keep what is freed for what comes next: glibc returns it, and each large array costs new pages, zeroed again."""
+    if sys.platform == "linux" and (mallopt := getattr(ctypes.CDLL(None), "mallopt", None)):  # musl has none
+        mallopt(_MMAP_THRESHOLD, _KEPT)
+        mallopt(_TRIM_THRESHOLD, _KEPT)
 
 
 class _Server:

@@ -13,14 +13,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.contact.graph import pair
 from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import SLIDE, TURN, JointEstimate
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.features.edge_scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +34,6 @@ if TYPE_CHECKING:
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
     from kinematify.joints.features.edge_scene import JointScene
-    from kinematify.joints.features.frames import BoxFrame
     from kinematify.paper.joints import PaperJoints
 
 _SAME = np.cos(np.radians(1.0))  # directions that no check tells apart
@@ -48,7 +49,7 @@ class CandidateJoints:
         self._assembly, self._graph, self._bearings, self._all = assembly, graph, bearings, config
         self._config = config.joints
         self._cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
-        self._frames: dict[tuple[int, ...], dict[int, BoxFrame]] = {}
+        self._wholes: dict[tuple[int, ...], TreeScenes] = {}
         self._scenes: dict[tuple[tuple[int, ...], int], JointScene] = {}
         self._scores: dict[tuple[object, ...], float] = {}
 
@@ -72,7 +73,7 @@ class CandidateJoints:
         if self._config.method == "cavl":
             return self._paper.realise(joint, candidate)
         scene = self.scene(tree, (joint.parent, joint.child))
-        found = find_range(scene, candidate.kind, candidate.axis, candidate.pivot, self._config)
+        found = find_range(scene, candidate.kind, candidate.axis, candidate.pivot)
         return replace(
             joint,
             axis=found.sign * candidate.axis,
@@ -85,14 +86,10 @@ class CandidateJoints:
         """All that is known of one tree edge before a joint is proposed."""
         key = (tree.parents, edge[1])
         if key not in self._scenes:
-            frames, bearing = self._frames_of(tree), self._bearings.get((min(edge), max(edge)))
-            self._scenes[key] = joint_scene(self._cache, tree, frames, edge, bearing, config=self._config)
+            if tree.parents not in self._wholes:
+                self._wholes[tree.parents] = TreeScenes(self._cache, tree, self._config)
+            self._scenes[key] = self._wholes[tree.parents].scene(edge, self._bearings.get(pair(*edge)))
         return self._scenes[key]
-
-    def _frames_of(self, tree: KinematicTree) -> Mapping[int, BoxFrame]:
-        if tree.parents not in self._frames:
-            self._frames[tree.parents] = part_frames(self._cache, tree, self._config)
-        return self._frames[tree.parents]
 
     def score(self, tree: KinematicTree, joint: JointEstimate) -> float:
         """Score of a joint below that of the best candidate of its edge [log odds]; 0 for the best and for fixed ones.
@@ -118,21 +115,13 @@ class CandidateJoints:
 
     def _measured(self, tree: KinematicTree, joint: JointEstimate) -> float:
         """Score of a joint that was not proposed, beside all that were."""
-        edge = joint.parent, joint.child
-        features = edge_features(
-            self._cache,
-            tree,
-            self._frames_of(tree),
-            edge,
-            self._bearings.get((min(edge), max(edge))),
-            config=self._config,
-            given=[Line(axis=joint.axis, point=joint.pivot)],
-        )
+        scene = self.scene(tree, (joint.parent, joint.child))
+        features = edge_features(scene, [Line(axis=joint.axis, point=joint.pivot)])
         judged = judge(features, self._config.confidence)
         hypotheses = judged.hypotheses
         apart = 1.0 - np.abs(hypotheses.axes @ joint.axis)
         if joint.kind.turns:
-            apart += np.linalg.norm(np.cross(hypotheses.pivots - joint.pivot, joint.axis), axis=1) / judged.size
+            apart += lengths_of(crossed(hypotheses.pivots - joint.pivot, joint.axis)) / judged.size
         apart[hypotheses.kinds != (TURN if joint.kind.turns else SLIDE)] = np.inf
         return float(judged.scores[int(np.argmin(apart))] - judged.scores.max())
 
@@ -145,7 +134,7 @@ def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
         return False
     if not joint.kind.turns:
         return True
-    apart = float(np.linalg.norm(np.cross(candidate.pivot - joint.pivot, joint.axis)))
+    apart = float(np.linalg.norm(crossed(candidate.pivot - joint.pivot, joint.axis)))
     return apart < 1e-9 + 1e-6 * float(np.linalg.norm(candidate.pivot))
 
 

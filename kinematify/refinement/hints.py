@@ -17,12 +17,12 @@ import numpy as np
 from kinematify.contact.graph import pair
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
-from kinematify.joints.choice.congruent_joints import TwinJoints
+from kinematify.pipeline.congruent_joints import carried
 from kinematify.pipeline.stages import choose_joints, tree_reward, with_doubt_of_parents
 from kinematify.pipeline.warnings import floating_parts, unlike_twins
+from kinematify.refinement.arborescence import tree_with_parents
 from kinematify.refinement.candidates import CandidateJoints, described
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.arborescence import tree_with_parents
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -276,7 +276,7 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
     spoken = {hint.part for hint in hints}
     earlier = tuple(text for text in inference.hints if text.partition("=")[0].partition(":")[0] not in spoken)
     before, after = (
-        unlike_twins(inference.assembly, inference.graph, inference.trees[0], found, inference.config)
+        unlike_twins(inference.assembly, inference.graph, inference.trees[0], found)
         for found in (inference.joints, joints)
     )
     said = (*(text for text in warnings if text not in before), *after)
@@ -296,15 +296,15 @@ def _models_first(hints: Sequence[Hint]) -> list[Hint]:
 
 def _as_twin(inference: Inference, model: JointEstimate, joint: JointEstimate) -> JointEstimate:
     """A joint as that of the part of which the user said that it is its twin."""
-    names, config = inference.assembly.names, inference.config
-    carried = TwinJoints(inference.assembly, inference.graph, config.bearing, seed=config.seed).carried(model, joint)
-    if not carried:
+    names = inference.assembly.names
+    found = next(carried(inference.assembly, inference.graph, model, joint), None)
+    if found is None:
         raise InputError(
             f"The hint {names[joint.child]}:twin={names[model.child]} cannot be followed: no motion or reflection "
             f"lays {names[model.child]} and its contact with {names[model.parent]} upon {names[joint.child]} and its "
             f"contact with {names[joint.parent]}. Give the joint of {names[joint.child]} by its type, axis and range."
         )
-    return _certain(carried[0])
+    return _certain(found)
 
 
 def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, hint: Hint) -> JointEstimate:

@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt
 
 from kinematify.config import load_config
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades, usual_colors
+from kinematify.processes.forked import each
 from kinematify.render.model_scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -79,18 +80,19 @@ class _Entry:
     """As it stands on the part; None where colours distinguish parts."""
 
 
-def render_preview(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
+def render_preview(model: KinematicModel, path: Path, config: PreviewConfig, robot: Robot | None = None) -> None:
     """Write a PNG with the model at rest and with every joint moved, side by side, and a legend of its joints.
 
     Args:
         model: What to show.
         path: PNG file to write.
         config: Size and quality.
+        robot: As of `opened_configuration`.
 
     Raises:
         OSError: The file cannot be written.
     """
-    write_sheet(model, rest_and_moved(model, config, ("at rest", "every joint moved")), config, path)
+    write_sheet(model, rest_and_moved(model, config, ("at rest", "every joint moved"), robot), config, path)
 
 
 def draw_robot(robot: Robot, poses: Mapping[str, FloatArray], azimuth: float) -> Image.Image:
@@ -120,14 +122,14 @@ def draw_robot(robot: Robot, poses: Mapping[str, FloatArray], azimuth: float) ->
 
 
 def rest_and_moved(
-    model: KinematicModel, config: PreviewConfig, captions: tuple[str, str]
+    model: KinematicModel, config: PreviewConfig, captions: tuple[str, str], robot: Robot | None = None
 ) -> tuple[PreviewPanel, PreviewPanel]:
-    """Panels of a model at rest and with every joint moved, with their captions."""
+    """Panels of a model at rest and with every joint moved (`opened_configuration`), with their captions."""
     number_of = {entry.name: entry.number for entry in _legend_entries(model)}
     numbers = tuple(number for name in _drawn_links(model) if (number := number_of[name]) is not None)
     rest, moved = (
         PreviewPanel(caption, scene_of(model, q, config), numbers)
-        for caption, q in zip(captions, ({}, opened_configuration(model, config)), strict=True)
+        for caption, q in zip(captions, ({}, opened_configuration(model, config, robot)), strict=True)
     )
     return rest, moved
 
@@ -165,14 +167,16 @@ def draw_panels(
     azimuth = best_azimuth(model, shared, config)
     groups = [shared if panel.scene in shared else [panel.scene] for panel in panels]
     size = panel_size(groups, azimuth, config)
-    images = []
-    for panel, group in zip(panels, groups, strict=True):
-        camera = camera_for(group, azimuth, config, size=size, margin=MARGIN)
+
+    def drawn(number: int) -> Image.Image:
+        panel = panels[number]
+        camera = camera_for(groups[number], azimuth, config, size=size, margin=MARGIN)
         image = render_scene(panel.scene, camera, config)
         if panel.numbers and panel.caption:
             _draw_numbers(image, panel, camera)
-        images.append(image)
-    return size, images
+        return image
+
+    return size, each(drawn, range(len(panels)))
 
 
 def _draw_numbers(image: Image.Image, panel: PreviewPanel, camera: Camera) -> None:

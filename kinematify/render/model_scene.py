@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.render.picture import PictureScene
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import Joint
+    from kinematify.robot.robot import Joint, Robot
 
     Mesh = tuple[FloatArray, IntArray]
 
@@ -60,10 +60,15 @@ def moving_joints(model: KinematicModel) -> tuple[Joint, ...]:
     return tuple(joint for joint in model.joints if joint.kind is not JointType.FIXED)
 
 
-def opened_configuration(model: KinematicModel, config: PreviewConfig) -> dict[str, float]:
+def opened_configuration(model: KinematicModel, config: PreviewConfig, robot: Robot | None = None) -> dict[str, float]:
     """A configuration in which every joint is moved as far as it goes; in long chains less far, so that none curls up.
 
     What would go through the floor or another part is moved half as far.
+
+    Args:
+        model: Of all joints.
+        config: How far they are moved.
+        robot: The same with the shapes by which parts meet; those that are seen if absent.
 
     Returns:
         Joint name -> position [rad or m].
@@ -83,12 +88,11 @@ def opened_configuration(model: KinematicModel, config: PreviewConfig) -> dict[s
         # Positive opens; the other way is taken only where nearly all of the range lies there.
         end = joint.upper if joint.upper > 0.1 * -joint.lower else joint.lower
         q[joint.name] = float(np.clip(config.moved_fraction * end, -cap, cap))
-    return q | {name: 0.5 * q[name] for name in _obstructed(model, q)}
+    return q | {name: 0.5 * q[name] for name in _obstructed(model, q, robot or model_robot(model))}
 
 
-def _obstructed(model: KinematicModel, q: Mapping[str, float]) -> set[str]:
+def _obstructed(model: KinematicModel, q: Mapping[str, float], robot: Robot) -> set[str]:
     """Joints that move a part through the floor or through another part in a configuration."""
-    robot = model_robot(model)
     seen = {link.name for link in model.links if len(link.part.faces) > 1}  # links without geometry have one triangle
     links = (link if link.name in seen else replace(link, visuals=(), collisions=()) for link in robot.links)
     scene = read_scene(replace(robot, links=tuple(links)), load_settings().geometry)

@@ -18,12 +18,12 @@ from kinematify.contact.graph import pair
 from kinematify.robot.vectors import box_around
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from kinematify.contact.graph import Pair
     from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.edge_evidence import EdgeEvidence
+    from kinematify.topology.edge_evidence import TreeEvidence
 
 
 # Weights of the cues for the base link; each cue is in [0, 1], each weight the score it can reach. With these 61 of 64
@@ -83,7 +83,7 @@ def rank_bases(
     edges: Iterable[Pair],
     stats: Sequence[PartStats],
     clusters: Sequence[Sequence[int]],
-    evidence: Mapping[Pair, EdgeEvidence],
+    evidence: TreeEvidence,
 ) -> tuple[BaseCandidate, ...]:
     """Rank all parts by how well they would serve as base link, best first.
 
@@ -91,7 +91,7 @@ def rank_bases(
         edges: The undirected spanning tree of the best joints.
         stats: Size and support of every part, world frame, z up.
         clusters: Groups of congruent parts.
-        evidence: Best joint of each edge, keyed (a, b) with a < b; its axis tells a turntable from a hinge.
+        evidence: Of the contacts; the axis of their best joint tells a turntable from a hinge.
 
     Returns:
         One candidate per part. Ties go to the larger part, then to the lower index.
@@ -122,7 +122,7 @@ class Skeleton:
         edges: Iterable[Pair],
         stats: Sequence[PartStats],
         clusters: Sequence[Sequence[int]],
-        evidence: Mapping[Pair, EdgeEvidence],
+        evidence: TreeEvidence,
     ) -> None:
         """Measure the tree once."""
         self.clusters = clusters
@@ -161,9 +161,10 @@ class Skeleton:
         share: FloatArray = np.clip(1 + np.log10(self.bulk) / BULK_DECADES, 0, 1)
         return share
 
-    def _upright_share(self, part: int, evidence: Mapping[Pair, EdgeEvidence]) -> float:
+    def _upright_share(self, part: int, evidence: TreeEvidence) -> float:
         """Share of a part's joints whose axis is vertical."""
-        axes = [item.axis for other in self.neighbours[part] if (item := evidence.get(pair(part, other))) is not None]
+        edges = [pair(part, other) for other in self.neighbours[part] if pair(part, other) in evidence.quality]
+        axes = (evidence.axes.get(edge) for edge in edges)
         return float(np.mean([axis is not None and abs(axis[2]) > VERTICAL for axis in axes] or [0.0]))
 
 

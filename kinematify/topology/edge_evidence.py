@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.choice.edges import edge_qualities
-from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -23,31 +22,26 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class EdgeEvidence:
-    """Quality of a contact for the tree, and its best joint; the same for both directions of the edge."""
+class TreeEvidence:
+    """What is known of contacts, keyed (a, b) with a < b; the same for both directions of an edge."""
 
-    quality: float
-    """In [0, 1]."""
-    axis: FloatArray | None
-    """Unit direction of the best joint in the world frame, shape (3,); None where there is none. Read-only."""
-    carriers: frozenset[int] = frozenset()
-    """Bodies far larger than both ends that bear them about one line."""
-
-    def __post_init__(self) -> None:
-        if self.axis is not None:
-            axis = np.asarray(self.axis, dtype=np.float64)
-            object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
+    quality: Mapping[Pair, float]
+    """Of every contact for the tree, in [0, 1]."""
+    axes: Mapping[Pair, FloatArray]
+    """Unit direction of the best joint of those that have one, world frame, shape (3,)."""
+    carriers: Mapping[Pair, frozenset[int]]
+    """Bodies far larger than both ends of an edge that bear them about one line."""
 
 
 def gather_evidence(
     graph: ContactGraph, stats: Sequence[PartStats], bearings: Mapping[Pair, EdgeBearing], pins: EdgePins
-) -> dict[Pair, EdgeEvidence]:
-    """Evidence of every contact edge, keyed (a, b) with a < b; arguments as in `edges.edge_measurements`."""
-    axes = {pair: bearing.lines[0].axis for pair, bearing in bearings.items() if bearing.lines}
-    return {
-        pair: EdgeEvidence(quality=quality, axis=axes.get(pair), carriers=pins.carriers.get(pair, frozenset()))
-        for pair, quality in edge_qualities(graph, stats, bearings, pins).items()
-    }
+) -> TreeEvidence:
+    """Evidence of every contact edge; arguments as in `edges.edge_measurements`."""
+    return TreeEvidence(
+        quality=edge_qualities(graph, stats, bearings, pins),
+        axes={pair: bearing.lines[0].axis for pair, bearing in bearings.items() if bearing.lines},
+        carriers=pins.carriers,
+    )
 
 
 def virtual_costs(centroids: FloatArray, *, limit: float = np.inf, forbidden: Iterable[Pair] = ()) -> FloatArray:

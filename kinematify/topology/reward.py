@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.edge_evidence import EdgeEvidence
+    from kinematify.topology.edge_evidence import TreeEvidence
 
 EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""
@@ -121,7 +121,7 @@ def mean_over_edges(tree: TreeLayout, weights: FloatArray) -> float:
     return float(weights[tree.parents[tree.children], tree.children].mean())
 
 
-def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], cluster_of: Sequence[int]) -> float:
+def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], kind: IntArray) -> float:
     """Our R_sym in [0, 1]: equal depths, and parents that are one part or one cluster, each part used equally often.
 
     The paper asks for one shared parent, which is false for knees: each hangs on its own thigh, and the thighs
@@ -129,7 +129,7 @@ def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], 
     """
     scores = []
     for cluster in clusters:
-        kinds = _parent_kinds([int(tree.parents[part]) for part in cluster], cluster_of)
+        kinds = _parent_kinds([int(tree.parents[part]) for part in cluster], kind)
         excess = min(kinds - 1, len(cluster) - 1)
         scores.append(0.5 * equal_depth(tree, cluster) + 0.5 * (1 - excess / (len(cluster) - 1)))
     return float(np.mean(scores)) if scores else 1.0
@@ -173,7 +173,7 @@ class TreeReward:
         self,
         graph: ContactGraph,
         stats: Sequence[PartStats],
-        evidence: Mapping[Pair, EdgeEvidence],
+        evidence: TreeEvidence,
         config: TopologyConfig,
         simulated: SimulatedEdges | None = None,
     ) -> None:
@@ -182,7 +182,7 @@ class TreeReward:
         Args:
             graph: Contacts and clusters.
             stats: Size and place of every part.
-            evidence: Best joint of each contact edge, keyed (a, b) with a < b.
+            evidence: Of the contact edges.
             config: Weights of the terms.
             simulated: What a simulation had against edges, if there was one; adds R_sim and weakens these edges.
 
@@ -208,14 +208,13 @@ class TreeReward:
         self.quality = self.edge_quality()
         if simulated is not None:
             self.quality = {edge: value * simulated.of_pair(edge) for edge, value in self.quality.items()}
-        self.stacks = {edge: item.carriers for edge, item in evidence.items() if item.carriers}
         self.edge_weights = np.zeros((graph.n_parts, graph.n_parts))
         for (a, b), value in self.quality.items():
             self.edge_weights[a, b] = self.edge_weights[b, a] = value
 
     def edge_quality(self) -> dict[Pair, float]:
         """Weight of every contact edge in [0, 1], before what a simulation had against it; 0 without evidence."""
-        return {pair: self.evidence[pair].quality if pair in self.evidence else 0.0 for pair in self.graph.by_pair}
+        return {pair: self.evidence.quality.get(pair, 0.0) for pair in self.graph.by_pair}
 
     @cached_property
     def likely(self) -> dict[Pair, float]:
@@ -245,10 +244,10 @@ class TreeReward:
     def own_terms(self, tree: TreeLayout, base_score: float) -> dict[str, float]:
         """The terms in which this reward differs from other ones."""
         return {
-            "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.cluster_of),
+            "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.alike.kind),
             "hier": log_hierarchy(tree, self.hulls),
             "base": base_score,
-            "stack": side_by_side(tree, self.stacks),
+            "stack": side_by_side(tree, self.evidence.carriers),
         }
 
     def _survived(self, tree: TreeLayout) -> float:
@@ -279,9 +278,8 @@ def equal_depth(tree: TreeLayout, cluster: Sequence[int]) -> float:
     return float(1 / (1 + np.var(tree.depth[list(cluster)])))
 
 
-def _parent_kinds(parents: Sequence[int], cluster_of: Sequence[int]) -> int:
+def _parent_kinds(parents: Sequence[int], kind: IntArray) -> int:
     """Number of different clusters or lone parts among the parents, one more where twins carry unequal numbers."""
     present = [parent for parent in parents if parent >= 0]
-    kinds = {(cluster_of[parent], -1) if cluster_of[parent] >= 0 else (-1, parent) for parent in present}
     counts = {present.count(parent) for parent in present}
-    return max(len(kinds) + (len(counts) > 1), 1)
+    return max(len(set(kind[present].tolist())) + (len(counts) > 1), 1)

@@ -149,14 +149,13 @@ class SearchProblem:
 
 
 class SearchState:
-    """``S = (T_S, V_S, B_S)``: partial tree, visited parts, broken edges."""
+    """``S = (T_S, V_S)``: partial tree and visited parts; ``B_S``, the broken edges, follows from both."""
 
     def __init__(self, problem: SearchProblem) -> None:
         """Start with the root alone and all certain edges that it reaches."""
         self.problem = problem
         self.parents = [-1] * problem.n
         self.visited = [False] * problem.n
-        self.broken: set[Pair] = set()
         self.n_visited = 0
         self.key = 0
         self._visit(problem.root, -1)
@@ -167,7 +166,7 @@ class SearchState:
         return self.n_visited == self.problem.n
 
     def apply(self, action: Action) -> list[int]:
-        """Add the edge u -> v, record as broken what v would close, and follow certain edges beyond v.
+        """Add the edge u -> v, and follow certain edges beyond v.
 
         Returns:
             The parts that became visited.
@@ -193,9 +192,6 @@ class SearchState:
             node, above = stack.pop()
             reached.append(node)
             self.parents[node] = above
-            self.broken.update(
-                pair(node, other) for other in self.problem.neighbours[node] if self.visited[other] and other != above
-            )
             self.visited[node] = True
             self.n_visited += 1
             stack.extend(
@@ -367,17 +363,10 @@ def plausible_bases(reward: TreeReward) -> tuple[BaseCandidate, ...]:
     return tuple(near[: config.max_bases])
 
 
-@dataclass(frozen=True, kw_only=True)
-class OpenEdges:
-    """Which edges a search may use: the spanning tree, and what could replace a part of it."""
-
-    usable: frozenset[Pair]
-    certain: frozenset[Pair]
-    """Edges of the spanning tree that nothing could replace."""
-
-
-def open_edges(weights: Mapping[Pair, float], tree: Sequence[Pair], n: int, config: TopologyConfig) -> OpenEdges:
-    """Find the ambiguous part of a graph.
+def open_edges(
+    weights: Mapping[Pair, float], tree: Sequence[Pair], n: int, config: TopologyConfig
+) -> tuple[frozenset[Pair], frozenset[Pair]]:
+    """Find the edges that a search may use, and those of the spanning tree that nothing could replace.
 
     An edge outside the maximum spanning tree is open when its weight reaches `competitive_ratio` of the weakest tree
     edge on the cycle that it closes; the tree edges it could replace are open with it. At most `max_open_edges` of
@@ -393,9 +382,7 @@ def open_edges(weights: Mapping[Pair, float], tree: Sequence[Pair], n: int, conf
     closeness.sort(key=lambda item: -item[0])
     kept = closeness[: config.max_open_edges]
     contested = {step for _, _, rivals in kept for step in rivals}
-    return OpenEdges(
-        usable=frozenset(tree) | {edge for _, edge, _ in kept}, certain=frozenset(tree) - frozenset(contested)
-    )
+    return frozenset(tree) | {edge for _, edge, _ in kept}, frozenset(tree) - frozenset(contested)
 
 
 def _trees_of_base(
@@ -437,15 +424,17 @@ def _search_problem(
     judge: Callable[[Parents], float],
 ) -> SearchProblem:
     graph, config = reward.graph, reward.config
+    certain: frozenset[Pair] = frozenset()
     if reward.searches_all_contacts:
-        usable = OpenEdges(usable=frozenset(touching_pairs(graph)), certain=frozenset())
+        usable = frozenset(touching_pairs(graph))
     else:
-        usable = open_edges(reward.quality, edges, graph.n_parts, config)
+        usable, certain = open_edges(reward.quality, edges, graph.n_parts, config)
     neighbours: list[list[int]] = [[] for _ in range(graph.n_parts)]
-    for a, b in sorted(usable.usable):
+    for a, b in sorted(usable):
         neighbours[a].append(b)
         neighbours[b].append(a)
-    forbidden = frozenset(_cluster_pairs(graph)) if config.cluster_edges == "forbid" else frozenset()
+    clusters = graph.clusters if config.cluster_edges == "forbid" else ()
+    forbidden = frozenset(ends for cluster in clusters for ends in combinations(cluster, 2))
     return SearchProblem(
         root=root,
         neighbours=neighbours,
@@ -455,18 +444,13 @@ def _search_problem(
             reward.centroids, limit=config.virtual_distance * reward.diagonal, forbidden=forbidden
         ),
         forbidden=forbidden,
-        certain=usable.certain,
+        certain=certain,
     )
 
 
 def touching_pairs(graph: ContactGraph) -> Iterator[Pair]:
     """Pairs of parts that touch; bridges are omitted."""
     return ((edge.a, edge.b) for edge in graph.edges if not edge.bridge)
-
-
-def _cluster_pairs(graph: ContactGraph) -> Iterator[Pair]:
-    for cluster in graph.clusters:
-        yield from combinations(sorted(cluster), 2)
 
 
 def finish_tree(reward: TreeReward, parents: Parents, total: float, terms: Mapping[str, float]) -> KinematicTree:

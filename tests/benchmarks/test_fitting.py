@@ -65,7 +65,7 @@ def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path
             cache=tmp_path / "cache",
             per_category=None,
             hold_out=(),
-            skip=("edges",),
+            skip=(),
             progress=silent,
         )
         assert set(report["sets"]) == {"random mechanisms"}

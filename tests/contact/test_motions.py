@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.bearings.congruent_contacts import motions_between
+from kinematify.contact.alike import motions_between
 from kinematify.robot.transforms import rotation_about
 
 MIRROR = np.diag([1.0, -1.0, 1.0])

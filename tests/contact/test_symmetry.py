@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build_graph import find_clusters
+from kinematify.contact.alike import find_clusters
 from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.geometry.surface import part_surfaces
 from kinematify.robot.transforms import rotation_about

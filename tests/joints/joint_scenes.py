@@ -9,13 +9,14 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.contact.build_graph import build_contact_graph
+from kinematify.contact.graph import pair
 from kinematify.contact.tree import KinematicTree
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.candidate import SLIDE, TURN
 from kinematify.joints.choice.decide import estimate_joints
-from kinematify.joints.features.edge_scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.slide_cues import rank_slides
 from kinematify.joints.features.turn_cues import rank_turns
 from kinematify.joints.features.workspace import PartCache
@@ -68,21 +69,20 @@ def scene_of(known: KnownObject, child: str) -> JointScene:
     """The scene of the joint that moves `child`."""
     tree, graph, bearings = evidence(known)
     cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
-    frames = part_frames(cache, tree, CONFIG.joints)
     index = known.index[child]
     edge = (tree.parents[index], index)
-    return joint_scene(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
+    return TreeScenes(cache, tree, CONFIG.joints).scene(edge, bearings.get(pair(*edge)))
 
 
 def ranked_turns(scene: JointScene) -> Ranked:
     """The proposed turns of a scene, best first."""
-    proposed = propose(scene, CONFIG.joints)
+    proposed = propose(scene)
     return rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), CONFIG.joints)
 
 
 def ranked_slides(scene: JointScene) -> Ranked:
     """The proposed slides of a scene, best first."""
-    proposed = propose(scene, CONFIG.joints)
+    proposed = propose(scene)
     return rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), CONFIG.joints)
 
 

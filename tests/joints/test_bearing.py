@@ -118,10 +118,10 @@ def wheel_in_a_square_well() -> KnownObject:
 def test_a_wheel_in_a_square_well_turns_about_its_own_axis() -> None:
     known = wheel_in_a_square_well()
     found = fitted(known)[0, 1]
-    one_sided = [line for line in found.lines if line.surface_a == 0.0]
+    one_sided = [line for line in found.lines if line.surfaces[0] == 0.0]
     assert len(one_sided) == 1
-    assert one_sided[0].surface_b > BEARING.turned_support
-    assert one_sided[0].score == pytest.approx(BEARING.turned_score * one_sided[0].surface_b)
+    assert one_sided[0].surfaces[1] > BEARING.turned_support
+    assert one_sided[0].score == pytest.approx(BEARING.turned_score * one_sided[0].surfaces[1])
     assert found.lines[0] is one_sided[0]
     assert angle_deg(one_sided[0].axis, known.joints[0].axis) < 0.1
     assert line_distance(one_sided[0], known.joints[0]) < 2e-3 * known.assembly.diagonal
@@ -131,7 +131,7 @@ def test_long_rods_do_not_turn_about_themselves() -> None:
     """A rod that leans in a corner of a square post may be hinged at its end."""
     post, rod = box((0, 0, 0), (0.1, 0.1, 0.5)), cylinder(0.02, (0.121, 0.05, 0.0), (0.121, 0.05, 0.5))
     lines = fitted(known_object("rod", {"post": post, "rod": rod}))[0, 1].lines
-    assert all(line.surface_a > 0.0 for line in lines)
+    assert all(line.surfaces[0] > 0.0 for line in lines)
 
 
 # ---- evidence --------------------------------------------------------------------------------------------------------

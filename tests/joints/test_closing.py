@@ -19,7 +19,7 @@ def lid_range(angle: float, axis: np.ndarray) -> tuple[float, float]:
     solids = {"base": box((0, -0.15, 0), (0.2, 0.15, 0.02)), "screen": box((0, -0.15, 0.0202), (0.2, 0.15, 0.03))}
     joint = turning("base", "screen", -Y, (0, 0, 0.0201), (0, 2.4))
     scene = scene_of(moved(known_object("laptop", solids, joint), {"screen": angle}), "screen")
-    found = find_range(scene, JointType.REVOLUTE, axis, np.array([0.0, 0.0, 0.0201]), CONFIG.joints)
+    found = find_range(scene, JointType.REVOLUTE, axis, np.array([0.0, 0.0, 0.0201]))
     # Back into the direction of the true joint, whose positive direction opens.
     return (
         (-found.back.motion, found.ahead.motion)

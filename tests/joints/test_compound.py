@@ -9,6 +9,7 @@ import trimesh
 from kinematify import infer
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
+from kinematify.contact.alike import AlikeParts
 from kinematify.contact.build_graph import build_contact_graph
 from kinematify.generate.registry import build
 from kinematify.geometry.surface import part_surfaces
@@ -47,7 +48,7 @@ def shaft(cross: float = 0.04) -> Assembly:
 
 def test_square_axes_that_meet_in_a_small_part_are_a_universal_joint() -> None:
     joints = [joint(0, 1, X, (0.3, 0, 0)), joint(1, 2, Y, (0, -0.2, 0))]
-    found = compounds(shaft(), joints, ())
+    found = compounds(shaft(), joints, AlikeParts(4, ()))
     assert found == (Compound(kind=CompoundKind.UNIVERSAL, children=(1, 2)),)
     assert described(found[0], shaft().names).startswith("The joints of cross and upper fork cross at a right angle")
 
@@ -61,15 +62,15 @@ def test_other_pairs_of_turns_are_no_universal_joint(
     axis: np.ndarray, pivot: tuple[float, float, float], cross: float
 ) -> None:
     joints = [joint(0, 1, X, (0, 0, 0)), joint(1, 2, axis, pivot)]
-    assert compounds(shaft(cross), joints, ()) == ()
+    assert compounds(shaft(cross), joints, AlikeParts(4, ())) == ()
 
 
 def test_three_axes_through_one_point_are_a_ball_joint_and_not_a_universal_one_too() -> None:
     joints = [joint(0, 1, X, (0.3, 0, 0)), joint(1, 2, Y, (0, -0.2, 0)), joint(2, 3, Z, (0, 0, 0.4))]
-    found = compounds(shaft(), joints, ())
+    found = compounds(shaft(), joints, AlikeParts(4, ()))
     assert found == (Compound(kind=CompoundKind.BALL, children=(1, 2, 3)),)
     in_a_plane = [*joints[:2], joint(2, 3, (X + Y) / np.sqrt(2), (0, 0, 0))]
-    assert [item.kind for item in compounds(shaft(), in_a_plane, ())] == [CompoundKind.UNIVERSAL]
+    assert [item.kind for item in compounds(shaft(), in_a_plane, AlikeParts(4, ()))] == [CompoundKind.UNIVERSAL]
 
 
 def hand(offset: float = 0.0) -> Assembly:
@@ -85,11 +86,11 @@ def hand(offset: float = 0.0) -> Assembly:
 
 def test_twins_that_slide_towards_each_other_are_fingers() -> None:
     slides = [joint(0, 1, -X, (0, 0, 0), JointType.PRISMATIC), joint(0, 2, X, (0, 0, 0), JointType.PRISMATIC)]
-    assert compounds(hand(), slides, ((1, 2),)) == (Compound(kind=CompoundKind.FINGERS, children=(1, 2)),)
-    assert compounds(hand(), slides, ()) == ()  # of different shape
-    assert compounds(hand(offset=0.05), slides, ((1, 2),)) == ()  # beside each other
+    assert compounds(hand(), slides, AlikeParts(3, [(1, 2)])) == (Compound(kind=CompoundKind.FINGERS, children=(1, 2)),)
+    assert compounds(hand(), slides, AlikeParts(4, ())) == ()  # of different shape
+    assert compounds(hand(offset=0.05), slides, AlikeParts(3, [(1, 2)])) == ()  # beside each other
     same_way = [slides[0], joint(0, 2, -X, (0, 0, 0), JointType.PRISMATIC)]
-    assert compounds(hand(), same_way, ((1, 2),)) == ()
+    assert compounds(hand(), same_way, AlikeParts(3, [(1, 2)])) == ()
 
 
 def test_a_tray_that_only_turning_arms_carry_is_a_linkage_that_was_not_found() -> None:

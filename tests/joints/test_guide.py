@@ -11,7 +11,7 @@ import pytest
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.joints.choice.limits import find_range, guided_share, guided_travel
 from kinematify.robot.joint_type import JointType
-from tests.joints.joint_scenes import CONFIG, scene_of
+from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, sliding
 
 if TYPE_CHECKING:
@@ -63,26 +63,26 @@ def push_button() -> JointScene:
 
 def test_a_telescope_leaves_its_tube_evenly_and_keeps_some_of_it() -> None:
     scene = telescope()
-    share = guided_share(scene, Z, np.array([0.0, 0.15, 0.4]), CONFIG.joints)
+    share = guided_share(scene, Z, np.array([0.0, 0.15, 0.4]))
     assert share is not None
     assert share == pytest.approx([1.0, 0.5, 0.0], abs=0.1)
-    assert guided_travel(scene, Z, CONFIG.joints) == pytest.approx(0.8 * 0.3, abs=0.03)
+    assert guided_travel(scene, Z) == pytest.approx(0.8 * 0.3, abs=0.03)
 
 
 def test_a_carriage_goes_to_the_ends_of_its_rail() -> None:
     scene = carriage()
     for direction in (X, -X):
-        assert guided_travel(scene, direction, CONFIG.joints) == pytest.approx(0.27, abs=0.03)
+        assert guided_travel(scene, direction) == pytest.approx(0.27, abs=0.03)
 
 
 def test_a_collar_runs_along_its_rod_although_it_is_small() -> None:
-    found = find_range(collar(), JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.05]), CONFIG.joints)
+    found = find_range(collar(), JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.05]))
     assert collar().smallness >= 1.0
     assert found.ahead.motion + found.back.motion == pytest.approx(0.93, abs=0.05)
 
 
 def test_the_stem_of_a_button_is_no_travel() -> None:
-    found = find_range(push_button(), JointType.PRISMATIC, -Z, np.array([0.0, 0.0, 0.2]), CONFIG.joints)
+    found = find_range(push_button(), JointType.PRISMATIC, -Z, np.array([0.0, 0.0, 0.2]))
     assert found.sign > 0.0
     assert 0.003 < found.ahead.motion < 0.009
 
@@ -94,7 +94,7 @@ def test_a_lid_that_lies_on_top_does_not_sink() -> None:
     scene = scene_of(
         known_object("pot", {"pot": pot, "lid": lid}, sliding("pot", "lid", Z, (0, 0, 0.2), (0, 0.1))), "lid"
     )
-    found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.2]), CONFIG.joints)
+    found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.2]))
     assert found.sign > 0.0
     assert found.back.motion == 0.0
     assert found.ahead.motion > 0.02
@@ -107,6 +107,6 @@ def test_a_cap_that_goes_round_its_pen_is_drawn_off() -> None:
     scene = scene_of(
         known_object("pen", {"pen": pen, "cap": cap}, sliding("pen", "cap", -Z, (0, 0, 0), (0, 0.06))), "cap"
     )
-    found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.03]), CONFIG.joints)
+    found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.03]))
     assert found.sign < 0.0
     assert found.ahead.motion > 0.03

@@ -69,7 +69,7 @@ def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
         )
     scene = scene_of(known_object("lamp", solids, *joints), "button")
     assert scene.serial
-    found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joints[0].pivot, CONFIG.joints)
+    found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joints[0].pivot)
     assert found.sign < 0.0
     assert found.ahead.motion < 0.011
 

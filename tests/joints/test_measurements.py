@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.joints.candidate import ELSEWHERE, TURN, Hypotheses
-from kinematify.joints.features.measurements import measure
+from kinematify.joints.features.measurements import MeasuredHypotheses, measure
 from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
 
@@ -30,7 +30,7 @@ def measured(child: Manifold, body: Manifold) -> Values:
         places=np.full(3, ELSEWHERE),
         sources=("x", "y", "z"),
     )
-    return measure(scene_of(known, "child"), hypotheses)
+    return measure(MeasuredHypotheses(scene_of(known, "child"), hypotheses))
 
 
 def rotor(blades: int, tilt: float) -> Manifold:

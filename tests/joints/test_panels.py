@@ -55,9 +55,11 @@ def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) ->
     assert scene.mechanism == 1.0
     assert scene.bearing is not None
     best = scene.bearing.lines[0]
-    lines = tuple(replace(best, axis=np.asarray(axis), score=score) for axis, score in axes_and_scores)
-    weak = replace(scene, has_bearing=False, bearing=replace(scene.bearing, lines=lines))
-    return ranked_turns(weak)
+    weak = replace(best, surfaces=(0.0, 0.0))
+    lines = tuple(replace(weak, axis=np.asarray(axis), score=score) for axis, score in axes_and_scores)
+    unsure = replace(scene, fitted=replace(scene.bearing, lines=lines))
+    assert not unsure.has_bearing
+    return ranked_turns(unsure)
 
 
 def test_axes_of_machines_run_along_their_parts() -> None:

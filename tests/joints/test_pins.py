@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
+from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.bearings.scores import BearingLine
 from kinematify.joints.features.pins import coaxial_carriers, find_pins
 from tests.joints.joint_scenes import evidence
@@ -15,9 +16,7 @@ CONFIG = load_config()
 
 
 def bearing(pivot: tuple[float, float, float], axis: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> BearingLine:
-    return BearingLine(
-        axis=np.array(axis), pivot=np.array(pivot), score=1.0, surface_a=1, surface_b=1, circles_a=1, circles_b=1
-    )
+    return BearingLine(axis=np.array(axis), pivot=np.array(pivot), score=1.0, surfaces=(1, 1), rings=(1, 1))
 
 
 @pytest.mark.parametrize(("offset", "lean", "found"), [(0.0, 0.0, True), (0.1, 0.0, False), (0.0, 0.1, False)])
@@ -31,7 +30,7 @@ def test_a_carrier_bears_both_shafts_on_their_own_line(offset: float, lean: floa
 def test_the_case_bears_the_hands_of_a_clock_and_no_hand_bears_the_case() -> None:
     known = clock()
     _, graph, bearings = evidence(known)
-    carriers = find_pins(known.assembly, graph, bearings, CONFIG).carriers
+    carriers = find_pins(known.assembly, graph, assembly_stats(known.assembly), bearings, CONFIG).carriers
     case, first, second = (known.index[name] for name in ("case", "hand_0", "hand_1"))
     assert carriers[first, second] == {case}
     assert not any(parts for edge, parts in carriers.items() if case in edge)

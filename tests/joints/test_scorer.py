@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from benchmarks.fit.trees import recipe_key
+from kinematify.contact.graph import pair
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.features.edge_scene import part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import PartCache, point_cloud
 from tests.joints.joint_scenes import CONFIG, evidence
 from tests.objects import BUILDERS
@@ -26,9 +27,8 @@ def first_features(name: str) -> Features:
     known = BUILDERS[name]()
     tree, graph, bearings = evidence(known)
     cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
-    frames = part_frames(cache, tree, CONFIG.joints)
     edge = next(iter(tree.edges()))
-    return edge_features(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
+    return edge_features(TreeScenes(cache, tree, CONFIG.joints).scene(edge, bearings.get(pair(*edge))))
 
 
 def cloud_of(features: Features) -> Cloud:

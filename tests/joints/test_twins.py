@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.joints.candidate import FIXED, SLIDE, TURN
-from kinematify.joints.choice.judge import agreed, alike_edges
+from kinematify.joints.choice.judge import agreed
 from tests.joints.joint_scenes import evidence, infer_joints
 from tests.objects import BUILDERS
 
@@ -24,7 +24,7 @@ def test_what_is_likelier_for_all_together_is_likelier_for_each() -> None:
 def test_fingers_of_one_hand_are_alike_and_get_one_type() -> None:
     known = BUILDERS["parallel_gripper"]()
     tree, graph, _ = evidence(known)
-    groups = alike_edges(graph, tree)
+    groups = [group for group in graph.alike.edges(tree) if len(group) > 1]
     assert [sorted(known.parts[child].name for _, child in group) for group in groups] == [
         sorted(joint.child for joint in known.joints if "finger" in joint.child)
     ]

@@ -69,6 +69,6 @@ def test_a_pin_that_would_leave_no_motion_is_reported_and_not_written() -> None:
     up, at = np.array([0.0, 0.0, 1.0]), np.array([0.05, 0.03, 0.0])
     pins = [SharedAxis(links=("ground", "coupler"), axis=up, pivot=at + 0.02)]
     pins += [SharedAxis(links=("rocker", "coupler"), axis=up, pivot=np.array([0.1, 0.06, 0.02])), pins[0]]
-    closed, closings = close_chains(free, pins[1:], (), 0.2)
+    closed, closings = close_chains(free, pins[1:], {link.name: k for k, link in enumerate(free.links)}, 0.2)
     assert [closing.loop is None for closing in closings] == [False, True]
     assert len(closed.loops) == 1

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 from kinematify.errors import ExitStatus
+from kinematify.processes.start import ONE_THREAD
 from tests.places import ROOT
 
 _LOOP = """
@@ -64,3 +66,16 @@ def test_the_model_is_the_same_for_any_number_of_jobs(tmp_path: Path) -> None:
         record = json.loads((out / "inference.json").read_text(encoding="utf-8"))
         records.append({key: value for key, value in record.items() if key not in ("seconds", "peak_mb")})
     assert records[0] == records[1]
+
+
+def test_a_validation_is_forked_from_the_inference_before_it(tmp_path: Path) -> None:
+    script = """
+import sys
+from kinematify.cli.app import run
+from kinematify.processes.start import worker_context
+assert run(["infer", sys.argv[1], "-o", sys.argv[2], "--jobs", "1", "--no-preview"]) == 0
+assert worker_context().get_start_method() == "fork", "a server imports again what is there already"
+"""
+    environment = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
+    words = [sys.executable, "-c", script, str(ROOT / "examples" / "cabinet"), str(tmp_path / "out")]
+    subprocess.run(words, env=environment, check=True, capture_output=True)

@@ -8,13 +8,13 @@ import yourdfpy
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build_graph import find_clusters
+from kinematify.contact.alike import find_clusters
 from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import part_stats
 from kinematify.geometry.surface import PartSurface
 from kinematify.topology.base_link import rank_bases
-from kinematify.topology.edge_evidence import EdgeEvidence
 from tests.places import BENCH
+from tests.topology.topology_objects import evidence_of
 
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")
 CONFIG = load_config()
@@ -33,7 +33,7 @@ def test_base_of_a_real_robot(name: str) -> None:
             assembly = Assembly(parts=tuple(parts), source=name)
             surfaces = [PartSurface(part, crease_angle=np.radians(30)) for part in parts]
             clusters = find_clusters(assembly, surfaces, config=CONFIG.contact, seed=0)
-        ranked = rank_bases(sorted(evidence), [*map(part_stats, parts)], clusters, evidence)
+        ranked = rank_bases(sorted(evidence), [*map(part_stats, parts)], clusters, evidence_of(evidence))
         assert ranked[0].part == root, [(names[item.part], item.score, item.reason) for item in ranked[:3]]
 
 
@@ -72,11 +72,11 @@ def rigid_group(robot: yourdfpy.URDF, link: str) -> str:
     return link
 
 
-def true_joints(robot: yourdfpy.URDF, names: list[str]) -> dict[tuple[int, int], EdgeEvidence]:
+def true_joints(robot: yourdfpy.URDF, names: list[str]) -> dict[tuple[int, int], tuple]:
     joints = {}
     for joint in robot.robot.joints:
         if joint.type != "fixed":
             ends = pair(names.index(rigid_group(robot, joint.parent)), names.index(joint.child))
             axis = robot.get_transform(joint.child)[:3, :3] @ joint.axis
-            joints[ends] = EdgeEvidence(quality=1.0, axis=axis)
+            joints[ends] = (1.0, axis)
     return joints

@@ -8,8 +8,7 @@ import pytest
 from kinematify.config import load_config
 from kinematify.paper.trees import PaperReward, hierarchy, symmetry
 from kinematify.topology import reward as terms
-from kinematify.topology.edge_evidence import EdgeEvidence
-from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
+from tests.topology.topology_objects import edge, evidence_of, graph_of, random_assembly, stat
 
 CONFIG = load_config().topology
 PAPER = load_config("paper").topology
@@ -39,12 +38,12 @@ def test_symmetry_of_the_paper() -> None:
 
 def test_corresponding_parents_count_as_symmetric() -> None:
     legs = terms.layout_tree([-1, 0, 0, 1, 2])
-    labels = (-1, 0, 0, 1, 1)
-    assert terms.corresponding_symmetry(legs, [(1, 2), (3, 4)], labels) == pytest.approx(1.0)
+    kind = np.array([0, 1, 1, 3, 3])
+    assert terms.corresponding_symmetry(legs, [(1, 2), (3, 4)], kind) == pytest.approx(1.0)
     # Three knees on two thighs: one thigh carries two, the other one.
     crooked = terms.layout_tree([-1, 0, 0, 1, 1, 2])
-    assert terms.corresponding_symmetry(crooked, [(1, 2), (3, 4, 5)], (-1, 0, 0, 1, 1, 1)) < 1.0
-    assert terms.corresponding_symmetry(legs, [], (-1,) * 5) == 1.0
+    assert terms.corresponding_symmetry(crooked, [(1, 2), (3, 4, 5)], np.array([0, 1, 1, 3, 3, 3])) < 1.0
+    assert terms.corresponding_symmetry(legs, [], np.arange(5)) == 1.0
 
 
 def test_hierarchy_of_the_paper_and_ours() -> None:
@@ -65,9 +64,8 @@ def test_total_is_the_weighted_mean() -> None:
 def test_shafts_that_pass_each_other_hang_side_by_side(passing: bool) -> None:
     graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0})
     stats = [stat((0, 0, 0), 2.0), stat((0, 0, 1)), stat((0, 0, 2), 0.5)]
-    evidence = {key: EdgeEvidence(quality=0.9, axis=None) for key in graph.by_pair}
-    if passing:
-        evidence[1, 2] = EdgeEvidence(quality=0.9, axis=None, carriers=frozenset({0}))
+    carriers = {(1, 2): frozenset({0})} if passing else {}
+    evidence = evidence_of(dict.fromkeys(graph.by_pair, (0.9, None)), carriers)
     reward = terms.TreeReward(graph, stats, evidence, CONFIG)
     chain, star = (reward.terms(parents)["stack"] for parents in ((-1, 0, 1), (-1, 0, 0)))
     assert star == 1.0
@@ -78,4 +76,4 @@ def test_a_bridge_has_no_contact_strength() -> None:
     graph = graph_of(2, {})
     bridged = type(graph)(n_parts=2, edges=(edge(0, 1, 0.9, bridge=True),), clusters=(), tolerance=0.01)
     stats = [stat((0, 0, 0)), stat((1, 0, 0))]
-    assert PaperReward(bridged, stats, {}, PAPER).quality == {(0, 1): 0.0}
+    assert PaperReward(bridged, stats, evidence_of({}), PAPER).quality == {(0, 1): 0.0}

@@ -15,13 +15,12 @@ from kinematify.contact.graph import ContactGraph, pair
 from kinematify.errors import InputError
 from kinematify.paper.trees import PaperReward
 from kinematify.pipeline.stages import rank_trees
-from kinematify.topology.edge_evidence import EdgeEvidence
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import (
     parents_from,
     plausible_bases,
 )
-from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
+from tests.topology.topology_objects import edge, evidence_of, graph_of, random_assembly, stat
 
 DEFAULT = load_config().topology
 PAPER = load_config("paper").topology
@@ -39,10 +38,8 @@ def dress(shape: nx.Graph, seed: int, clusters: tuple[tuple[int, ...], ...]) -> 
     n = len(shape)
     graph = graph_of(n, {pair(*ends): float(rng.random()) for ends in sorted(shape.edges)}, clusters)
     stats = [stat(rng.random(3), float(rng.random()) + 0.1, float(rng.random())) for _ in range(n)]
-    evidence = {
-        (item.a, item.b): EdgeEvidence(quality=float(rng.random()), axis=rng.normal(size=3)) for item in graph.edges
-    }
-    return graph, stats, evidence
+    evidence = {(item.a, item.b): (float(rng.random()), rng.normal(size=3)) for item in graph.edges}
+    return graph, stats, evidence_of(evidence)
 
 
 def brute_force(graph: ContactGraph, reward: TreeReward, roots: dict[int, float], banned: set) -> float:
@@ -108,7 +105,7 @@ def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
     # A chain whose second and third link are congruent; the paper's ban cuts it, the default does not.
     graph = graph_of(4, {(0, 1): 0.5, (1, 2): 0.5, (2, 3): 0.5}, [(1, 2)])
     stats = [stat((0, 0, float(k)), 2.0 if k == 0 else 1.0) for k in range(4)]
-    evidence = {key: EdgeEvidence(quality=0.3, axis=None) for key in graph.by_pair}
+    evidence = evidence_of(dict.fromkeys(graph.by_pair, (0.3, None)))
     assert rank_trees(graph, stats, evidence, DEFAULT, seed=0, base=0)[0].parents == (-1, 0, 1, 2)
     assert rank_trees(graph, stats, evidence, PAPER, seed=0, base=0)[0].parents[2] != 1
 
@@ -117,7 +114,7 @@ def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
 def test_parts_that_touch_nothing_are_joined_to_the_nearest(config: TopologyConfig, mode: str) -> None:
     graph = graph_of(4, {(0, 1): 0.5})
     stats = [stat((0, 0, 0), 9.0), stat((2, 0, 0), 4.0), stat((4, 0, 0), 2.0), stat((100, 0, 0))]
-    tree = rank_trees(graph, stats, {}, config.model_copy(update={"mode": mode}), seed=0, base=0)[0]
+    tree = rank_trees(graph, stats, evidence_of({}), config.model_copy(update={"mode": mode}), seed=0, base=0)[0]
     assert tree.parents == (-1, 0, 1, 2)
     assert tree.virtual == {(1, 2), (2, 3)}
 
@@ -126,7 +123,7 @@ def test_a_bridge_is_used_and_reported_as_virtual() -> None:
     edges = (edge(0, 1), edge(0, 2, bridge=True))
     graph = ContactGraph(n_parts=3, edges=edges, clusters=(), tolerance=0.01)
     stats = [stat((0, 0, 0), 9.0), stat((2, 0, 0)), stat((3, 0, 0))]
-    tree = rank_trees(graph, stats, {}, DEFAULT, seed=0)[0]
+    tree = rank_trees(graph, stats, evidence_of({}), DEFAULT, seed=0)[0]
     assert tree.parents == (-1, 0, 0)
     assert tree.virtual == {(0, 2)}
     assert tree.broken == frozenset()

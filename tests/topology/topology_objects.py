@@ -9,7 +9,7 @@ import numpy as np
 from kinematify.assembly.part import Part
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, pair
 from kinematify.geometry.part_stats import PartStats, part_stats
-from kinematify.topology.edge_evidence import EdgeEvidence
+from kinematify.topology.edge_evidence import TreeEvidence
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -33,6 +33,18 @@ def graph_of(
     """A contact graph with the given strengths."""
     edges = tuple(edge(a, b, value) for (a, b), value in sorted(strengths.items()))
     return ContactGraph(n_parts=n, edges=edges, clusters=tuple(map(tuple, clusters)), tolerance=0.01)
+
+
+def evidence_of(
+    edges: Mapping[tuple[int, int], tuple[float, np.ndarray | None]],
+    carriers: Mapping[tuple[int, int], frozenset[int]] | None = None,
+) -> TreeEvidence:
+    """Evidence of edges by quality and direction of the best joint, of any length."""
+    return TreeEvidence(
+        quality={ends: quality for ends, (quality, _) in edges.items()},
+        axes={ends: axis / np.linalg.norm(axis) for ends, (_, axis) in edges.items() if axis is not None},
+        carriers=carriers or {},
+    )
 
 
 def stat(centroid: Sequence[float], volume: float = 1.0, flat: float = 0.0) -> PartStats:
@@ -60,7 +72,7 @@ class Machine:
     def __init__(self) -> None:
         self.parts: list[Part] = []
         self.parents: list[int] = []
-        self.evidence: dict[tuple[int, int], EdgeEvidence] = {}
+        self.joints: dict[tuple[int, int], tuple[float, np.ndarray | None]] = {}
 
     def add(self, centre: Sequence[float], size: Sequence[float], parent: int = -1, axis: np.ndarray = Y) -> int:
         """Add a box; the first one is the base."""
@@ -68,13 +80,18 @@ class Machine:
         self.parts.append(box(f"p{index}", centre, size))
         self.parents.append(parent)
         if parent >= 0:
-            self.evidence[pair(parent, index)] = EdgeEvidence(quality=1.0, axis=axis)
+            self.joints[pair(parent, index)] = (1.0, axis)
         return index
 
     @property
     def edges(self) -> list[tuple[int, int]]:
         """The true undirected tree."""
-        return sorted(self.evidence)
+        return sorted(self.joints)
+
+    @property
+    def evidence(self) -> TreeEvidence:
+        """That of the true joints."""
+        return evidence_of(self.joints)
 
     @property
     def stats(self) -> list[PartStats]:
@@ -93,7 +110,7 @@ class Machine:
 
 def random_assembly(
     n: int, extra: int, seed: int, clusters: Iterable[Sequence[int]] = ()
-) -> tuple[ContactGraph, list[PartStats], dict[tuple[int, int], EdgeEvidence]]:
+) -> tuple[ContactGraph, list[PartStats], TreeEvidence]:
     """A connected random graph: a random tree of mostly short branches and `extra` more contacts."""
     rng = np.random.default_rng(seed)
     pairs = {(int(rng.integers(max(0, i - 4), i)), i) for i in range(1, n)}
@@ -102,7 +119,5 @@ def random_assembly(
         pairs.add((a, b))
     graph = graph_of(n, {item: float(rng.random()) for item in sorted(pairs)}, clusters)
     stats = [stat(rng.random(3), float(rng.random()) + 0.1, float(rng.random())) for _ in range(n)]
-    evidence = {
-        (item.a, item.b): EdgeEvidence(quality=float(rng.random()), axis=rng.normal(size=3)) for item in graph.edges
-    }
-    return graph, stats, evidence
+    evidence = {(item.a, item.b): (float(rng.random()), rng.normal(size=3)) for item in graph.edges}
+    return graph, stats, evidence_of(evidence)

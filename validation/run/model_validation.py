@@ -12,7 +12,7 @@ from kinematify.errors import ConfigError, InputError, KinematifyError
 from kinematify.robot.description import form_of
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.isolation import start_server
+from kinematify.validation.isolation import load_imports
 from kinematify.validation.models import find_models
 from kinematify.validation.run import validate as run_checks
 from kinematify.validation.run.needs import needed, stages_of
@@ -127,8 +127,8 @@ def validate(
 
 
 def start_validation() -> None:
-    """Start to load what `validated` needs, on another core than the caller's work."""
-    start_server(needed(stages_of(DEFAULT_ENGINES), _selected(WRITTEN, ())))
+    """Start to load what `validated` needs on another core, if its processes cannot be forked from this one."""
+    load_imports(ahead=needed(stages_of(DEFAULT_ENGINES), _selected(WRITTEN, ())))
 
 
 def validated(urdf: Path) -> ValidationReport | KinematifyError:

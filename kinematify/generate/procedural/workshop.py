@@ -15,6 +15,7 @@ from kinematify.generate.procedural.materials import MATERIALS, grain_coordinate
 from kinematify.generate.procedural.solids import flat, union
 from kinematify.robot.appearance import Appearance
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -72,10 +73,10 @@ def _waves(solid: Manifold, rng: np.random.Generator) -> tuple[FloatArray, Float
     """Wave vectors [rad/m], (w, 3), phases, (w,), and directions, (w, 3), of a smooth field."""
     size = float(np.linalg.norm(np.subtract(solid.bounding_box()[3:], solid.bounding_box()[:3])))
     directions = rng.normal(size=(_WAVES, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    directions /= lengths_of(directions)[:, None]
     lengths = size * rng.uniform(0.05, 0.25, size=_WAVES)
     vectors = rng.normal(size=(_WAVES, 3))
-    vectors *= (2.0 * np.pi / lengths / np.linalg.norm(vectors, axis=1))[:, None]
+    vectors *= (2.0 * np.pi / lengths / lengths_of(vectors))[:, None]
     return vectors, rng.uniform(0.0, 2.0 * np.pi, size=_WAVES), directions
 
 
@@ -83,7 +84,7 @@ def _bumps(points: FloatArray, waves: tuple[FloatArray, FloatArray, FloatArray])
     """A field of displacements of length 1 at most, (n, 3)."""
     vectors, phases, directions = waves
     field = np.sin(points @ vectors.T + phases) @ directions
-    return field / max(float(np.linalg.norm(field, axis=1).max()), 1e-12)
+    return field / max(float(lengths_of(field).max()), 1e-12)
 
 
 Look: TypeAlias = "tuple[str, str | RGB | None]"

@@ -213,7 +213,7 @@ def _turned_lines(
     at its end is round about the wrong line.
     """
     lines = []
-    for own, shares, rng in ((pair[0], (1.0, 0.0), draws[0]), (pair[1], (0.0, 1.0), draws[1])):
+    for own, rng in zip(pair, draws, strict=True):
         side = whole_side(surfaces[own], config.turned_samples)
         line = _own_axis(side, config, rng)
         if line is None:
@@ -221,17 +221,16 @@ def _turned_lines(
         support = line_support(side, line, config)
         arm = side.points - line.point
         height = float(np.ptp(arm @ line.axis))
-        width = 2 * float(np.linalg.norm(np.cross(arm, line.axis), axis=1).max())
+        width = 2 * float(np.linalg.norm(crossed(arm, line.axis), axis=1).max())
+        shares = (support, 0.0) if own == pair[0] else (0.0, support)
         if support >= config.turned_support and height <= config.turned_length * width:
             lines.append(
                 BearingLine(
                     axis=line.axis,
                     pivot=line.foot(centroid),
                     score=config.turned_score * support,
-                    surface_a=support * shares[0],
-                    surface_b=support * shares[1],
-                    circles_a=0.0,
-                    circles_b=0.0,
+                    surfaces=shares,
+                    rings=(0.0, 0.0),
                 )
             )
     return lines

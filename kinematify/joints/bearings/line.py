@@ -26,7 +26,7 @@ class Line:
 
     def foot(self, target: FloatArray) -> FloatArray:
         """Point of the line that is nearest to `target`, world frame [m], shape (3,)."""
-        return np.asarray(self.point + self.axis * float((target - self.point) @ self.axis))
+        return self.point + self.axis * float((target - self.point) @ self.axis)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.bearings.line import Line, Lines
+from kinematify.joints.bearings.line import Line, Lines, lines_of
 from kinematify.joints.bearings.scores import OCTAGON, across_axes
 from kinematify.robot.vectors import lengths_of
 
@@ -19,16 +18,12 @@ if TYPE_CHECKING:
 _LONGEST_STEP = 0.1  # in rad and in spreads: farther, the linear model means nothing
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Rows:
-    """Linearised residuals of L lines; the parameters are two tilts of the axis [rad] and two shifts [spread]."""
+Rows = tuple["FloatArray", "FloatArray", "FloatArray"]
+"""Linearised residuals of L lines; the parameters are two tilts of the axis [rad] and two shifts [spread].
 
-    design: FloatArray
-    """Derivatives of the residuals with frozen radii, shape (L, 4, R)."""
-    rest: FloatArray
-    """Residuals: sines of angles, shape (L, R)."""
-    weight: FloatArray
-    """Robust weight times evidence, shape (L, R)."""
+Derivatives of the residuals with frozen radii, shape (L, 4, R), the residuals, which are sines of angles, and their
+robust weights times evidence, shape (L, R) each.
+"""
 
 
 def refine_lines(
@@ -54,13 +49,13 @@ def refine_lines(
         frames = line_frames(lines.axes)
         normal, gradient = np.zeros((len(lines), 4, 4)), np.zeros((len(lines), 4))
         for side in sides:
-            for rows in (
+            for design, rest, weight in (
                 surface_rows(side, lines, frames, spread=spread, tolerance=tolerance),
                 circle_rows(side, lines, frames, spread=spread, tolerance=tolerance, share=config.circle_weight),
             ):
-                weighted = rows.design * rows.weight[:, None]
-                normal += weighted @ rows.design.transpose(0, 2, 1)
-                gradient += (weighted @ rows.rest[..., None])[..., 0]
+                weighted = design * weight[:, None]
+                normal += weighted @ design.transpose(0, 2, 1)
+                gradient += (weighted @ rest[..., None])[..., 0]
         damping = 1e-9 * np.trace(normal, axis1=1, axis2=2) + 1e-15
         damped = normal + damping[:, None, None] * np.eye(4)
         steps = np.zeros((len(lines), 4))
@@ -72,8 +67,7 @@ def refine_lines(
 
 def refine_line(sides: Sides, line: Line, tolerances: FloatArray, config: BearingConfig) -> Line:
     """`refine_lines` of a single line."""
-    lines = Lines(axes=line.axis[None], points=line.point[None])
-    return refine_lines(sides, lines, tolerances, config)[0]
+    return refine_lines(sides, lines_of([line]), tolerances, config)[0]
 
 
 def sample_spread(sides: Sides) -> float:
@@ -119,7 +113,7 @@ def surface_rows(side: BearingSide, lines: Lines, frames: FloatArray, *, spread:
     shift = -n2 * (spread / radius), n1 * (spread / radius)
     total = max(float(side.weights.sum()), 1e-300)
     weight = np.exp(-((rest / tolerance) ** 2)) * (1 - along**2) * side.weights / total
-    return Rows(design=np.stack([*tilt, *shift], axis=1), rest=rest, weight=weight)
+    return np.stack([*tilt, *shift], axis=1), rest, weight
 
 
 def circle_rows(
@@ -144,10 +138,10 @@ def circle_rows(
     shift = np.concatenate([zeros, np.stack([t1, t2], axis=1) * (-spread / radius)[:, None]], axis=1)
     fit = np.exp(-((level / tolerance) ** 2) - (outward / tolerance) ** 2) * (side.lengths < OCTAGON * radius)
     weight = share * fit * side.edge_weights * np.minimum(side.lengths / radius, 0.5) / (2 * np.pi)
-    return Rows(
-        design=np.concatenate([tilt, shift], axis=2),
-        rest=np.concatenate([level, outward], axis=1),
-        weight=np.concatenate([weight, weight], axis=1),
+    return (
+        np.concatenate([tilt, shift], axis=2),
+        np.concatenate([level, outward], axis=1),
+        np.concatenate([weight, weight], axis=1),
     )
 
 
@@ -161,4 +155,4 @@ def _seen_from(lines: Lines, frames: FloatArray, points: FloatArray) -> FloatArr
 def _turned_into(frames: FloatArray, vectors: FloatArray) -> FloatArray:
     """Coordinates of vectors (n, 3) along the axes of each frame, shape (3, L, n)."""
     flat = frames.transpose(1, 0, 2).reshape(-1, 3) @ vectors.T
-    return np.asarray(flat.reshape(3, len(frames), len(vectors)))
+    return flat.reshape(3, len(frames), len(vectors))

@@ -63,14 +63,14 @@ def _cross_directions(side: BearingSide, count: int, rng: np.random.Generator) -
     cross = crossed(side.normals[first], side.normals[second])
     sine = lengths_of(cross)
     good = sine > 0.3  # about 17 deg; nearly parallel normals leave the direction open
-    return np.asarray(cross[good] / sine[good, None])
+    return cross[good] / sine[good, None]
 
 
 def _score(sides: Sides, axes: FloatArray, config: RailConfig) -> FloatArray:
     area = [_extruded_area(side, axes, config) for side in sides]
     edges = [_guiding_edges(side, axes, config) for side in sides]
     guided = (config.edge_floor + np.sqrt(edges[0] * edges[1])) / (config.edge_floor + 1)
-    return np.asarray(np.sqrt(area[0] * area[1]) * guided)
+    return np.sqrt(area[0] * area[1]) * guided
 
 
 def _extruded_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> FloatArray:
@@ -90,7 +90,7 @@ def _block_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> Floa
     for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):  # equal directions keep equal digits
         moments[:, i, j] = moments[:, j, i] = (fit * (side.normals[:, i] * side.normals[:, j])[:, None]).sum(axis=0)
     # The normals that count are across the axis, so the smallest of the three eigenvalues belongs to the axis itself.
-    return np.asarray(np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0))
+    return np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0)
 
 
 def _guiding_edges(side: BearingSide, axes: FloatArray, config: RailConfig) -> FloatArray:
@@ -145,7 +145,7 @@ def surface_support(side: BearingSide, lines: Lines, config: BearingConfig) -> F
 
 def line_support(side: BearingSide, line: Line, config: BearingConfig) -> float:
     """`surface_support` of a single line."""
-    return float(surface_support(side, Lines(axes=line.axis[None], points=line.point[None]), config)[0])
+    return float(surface_support(side, lines_of([line]), config)[0])
 
 
 def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> FloatArray:
@@ -167,10 +167,10 @@ def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> Fl
 
 
 def across_axes(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two unit vectors across each axis, shapes (L, 3)."""
+    """Two unit vectors across each axis, shapes (L, 3); zero where that is zero."""
     helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
     first = crossed(axes, helper)
-    first /= lengths_of(first)[:, None]
+    first /= np.maximum(lengths_of(first), 1e-12)[:, None]
     return first, crossed(axes, first)
 
 
@@ -217,10 +217,10 @@ class BearingLine:
     """Point of the line nearest to the contact centroid, world frame [m], shape (3,). Read-only."""
     score: float
     """Combined support; comparable among edges of one assembly."""
-    surface_a: float
-    surface_b: float
-    circles_a: float
-    circles_b: float
+    surfaces: tuple[float, ...]
+    """Share of either part's area that turns into itself about it."""
+    rings: tuple[float, ...]
+    """The same of its circular edges."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axis", read_only(self.axis, np.float64))
@@ -234,19 +234,17 @@ class BearingLine:
     @property
     def exchanged(self) -> BearingLine:
         """The same line with its support on either part exchanged."""
-        return replace(
-            self, surface_a=self.surface_b, surface_b=self.surface_a, circles_a=self.circles_b, circles_b=self.circles_a
-        )
+        return replace(self, surfaces=self.surfaces[::-1], rings=self.rings[::-1])
 
     @property
     def surface(self) -> float:
         """Geometric mean of the revolution support of both parts (F of feasibility.md section 4)."""
-        return float(np.sqrt(self.surface_a * self.surface_b))
+        return float(np.sqrt(np.prod(self.surfaces)))
 
     @property
     def circles(self) -> float:
         """Geometric mean of the circle support of both parts (CS of feasibility.md section 4)."""
-        return float(np.sqrt(self.circles_a * self.circles_b))
+        return float(np.sqrt(np.prod(self.rings)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -262,33 +260,29 @@ class EdgeBearing:
     follows: tuple[tuple[int, int], ...] = ()
     """Contacts of congruent parts whose evidence put another line first than this contact would by itself."""
 
+    @property
+    def best_score(self) -> float:
+        """Score of the best line; 0 without one."""
+        return self.lines[0].score if self.lines else 0.0
+
 
 def scored_line(sides: Sides, line: Line, centroid: FloatArray, diagonal: float, config: BearingConfig) -> BearingLine:
     """Score a line as a bearing of a contact; its pivot is the foot of the contact centroid."""
-    return scored_lines(sides, Lines(axes=line.axis[None], points=line.point[None]), centroid, diagonal, config)[0]
+    return scored_lines(sides, lines_of([line]), centroid, diagonal, config)[0]
 
 
 def scored_lines(
     sides: Sides, lines: Lines, centroid: FloatArray, diagonal: float, config: BearingConfig
 ) -> list[BearingLine]:
     """`scored_line` of each of many lines."""
-    surface_a, surface_b = (surface_support(side, lines, config).tolist() for side in sides)
+    supports = [surface_support(side, lines, config).tolist() for side in sides]
     scored = []
-    for index, line in enumerate(lines):
-        circles_a, circles_b = (circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
-        support = np.sqrt(surface_a[index] * surface_b[index])
-        score = float(support * (config.circle_floor + np.sqrt(circles_a * circles_b)) / (config.circle_floor + 1))
-        scored.append(
-            BearingLine(
-                axis=line.axis,
-                pivot=line.foot(centroid),
-                score=score,
-                surface_a=surface_a[index],
-                surface_b=surface_b[index],
-                circles_a=circles_a,
-                circles_b=circles_b,
-            )
-        )
+    for line, surfaces in zip(lines, zip(*supports, strict=True), strict=True):
+        rings = tuple(circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
+        floor = config.circle_floor
+        score = float(np.sqrt(np.prod(surfaces)) * (floor + np.sqrt(np.prod(rings))) / (floor + 1))
+        found = BearingLine(axis=line.axis, pivot=line.foot(centroid), score=score, surfaces=surfaces, rings=rings)
+        scored.append(found)
     return scored
 
 

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from kinematify.contact.graph import pair
 from kinematify.joints.bearings.line import Line
-from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
-from kinematify.joints.choice.judge import agreed, alike_edges, judge
+from kinematify.joints.candidate import JointEstimate, JointLine, JointType
+from kinematify.joints.choice.judge import agreed, judge
 from kinematify.joints.choice.limits import find_range
 from kinematify.joints.features.columns import features_of
-from kinematify.joints.features.edge_scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
 from kinematify.processes.forked import each
 from kinematify.robot.exact_faces import joined_faces
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.features.columns import Features
-    from kinematify.joints.features.frames import BoxFrame
+    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.exact_faces import ExactFaces
 
@@ -57,33 +58,28 @@ def estimate_joints(
         One estimate per edge, in the order of `tree.edges()`.
     """
     cache = PartCache(assembly, graph, samples=config.samples, seed=seed)
-    frames = part_frames(cache, tree, config)
+    whole = TreeScenes(cache, tree, config)
 
     def joints_of(group: Sequence[tuple[int, int]]) -> list[JointEstimate]:
-        found = [
-            edge_features(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
-            for edge in group
-        ]
+        found = [edge_features(whole.scene(edge, bearings.get(pair(*edge)))) for edge in group]
         judged = [judge(features, config.confidence) for features in found]
         if len(group) > 1:
             likely = agreed([item.hypotheses.kinds for item in judged], [item.prior for item in judged])
             fixed = float(np.mean([item.fixed for item in judged]))
             judged = [replace(item, prior=given, fixed=fixed) for item, given in zip(judged, likely, strict=True)]
-        return [with_exact_lines(assembly, _estimate(*pair, config=config)) for pair in zip(found, judged, strict=True)]
+        return [with_exact_lines(assembly, _estimate(*item)) for item in zip(found, judged, strict=True)]
 
-    groups = alike_edges(graph, tree)
-    together = {edge for group in groups for edge in group}
-    groups += [[edge] for edge in tree.edges() if edge not in together]
-    estimates = {(joint.parent, joint.child): joint for joints in each(joints_of, groups) for joint in joints}
+    found = each(joints_of, graph.alike.edges(tree))
+    estimates = {(joint.parent, joint.child): joint for joints in found for joint in joints}
     return tuple(estimates[edge] for edge in tree.edges())
 
 
-def _estimate(features: Features, judged: Posterior, *, config: JointsConfig) -> JointEstimate:
-    scene = features.scene
+def _estimate(features: Features, judged: Posterior) -> JointEstimate:
+    scene, config = features.scene, features.scene.config
     fixed = judged.fixed > config.confidence.fixed
     kind = JointType.FIXED if fixed else judged.kind(judged.best)
     axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
-    found = find_range(scene, kind, axis, pivot, config)
+    found = find_range(scene, kind, axis, pivot)
     return JointEstimate(
         parent=scene.parent,
         child=scene.child,
@@ -104,33 +100,18 @@ def _estimate(features: Features, judged: Posterior, *, config: JointsConfig) ->
     )
 
 
-def edge_features(
-    cache: PartCache,
-    tree: KinematicTree,
-    frames: Mapping[int, BoxFrame],
-    edge: tuple[int, int],
-    bearing: EdgeBearing | None,
-    *,
-    config: JointsConfig,
-    given: Sequence[Line] = (),
-) -> Features:
-    """Propose the joints of the tree edge (parent, child) and measure them.
+def edge_features(scene: JointScene, given: Sequence[Line] = ()) -> Features:
+    """Propose the joints of an edge and measure them.
 
     Args:
-        cache: Samples and scenes of the parts.
-        tree: Parent of every part.
-        frames: `part_frames` of the tree.
-        edge: Parent and child.
-        bearing: Of their contact, if they touch.
-        config: Weights and thresholds.
+        scene: The edge.
         given: Lines to measure beside the proposals, as turns about them and as slides along them. They have no say in
             the type.
     """
-    scene = joint_scene(cache, tree, frames, edge, bearing, config=config)
-    return features_of(scene, propose(scene, config, given), config)
+    return features_of(scene, propose(scene, given))
 
 
-_Joint = TypeVar("_Joint", JointEstimate, JointCandidate)
+_Joint = TypeVar("_Joint", bound=JointLine)
 _NEAR = np.radians(1.0)
 """A fitted direction within this angle of an exact one means it [rad]."""
 _BESIDE = 5e-3
@@ -161,7 +142,7 @@ def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
         return replace(item, axis=direction * np.sign(direction @ item.axis))
     if not item.kind.turns:
         return item
-    beside = lengths_of(np.cross(points - item.pivot, axes))
+    beside = lengths_of(crossed(points - item.pivot, axes))
     near = (_angles(axes, item.axis) < _NEAR) & (beside < _BESIDE * diagonal)
     if not near.any():
         return item
@@ -172,4 +153,4 @@ def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
 
 def _angles(directions: FloatArray, axis: FloatArray) -> FloatArray:
     """Between lines, shape (n,) [rad]; by the sine, since cosines near 1 are blunt."""
-    return np.asarray(np.arcsin(np.clip(lengths_of(np.cross(directions, axis)), 0.0, 1.0)))
+    return np.arcsin(np.clip(lengths_of(crossed(directions, axis)), 0.0, 1.0))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.build_graph import build_contact_graph
+from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_edge, score_line
@@ -21,7 +22,7 @@ from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
 from kinematify.joints.choice.edges import edge_qualities
 from kinematify.joints.choice.judge import judge as judge_edge
 from kinematify.joints.features.columns import features_of
-from kinematify.joints.features.edge_scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.pins import find_pins
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
@@ -64,7 +65,7 @@ class JudgedAssembly:
         self.bearing = cache(partial(self._fitted, seed=seed))
         """Bearing lines of two parts, the lower index first; None where they do not touch."""
         self.cache = PartCache(assembly, self.graph, samples=config.joints.samples, seed=seed)
-        self.frames = part_frames(self.cache, tree, config.joints)
+        self.scenes = TreeScenes(self.cache, tree, config.joints)
 
     def _fitted(self, pair: Pair, seed: int) -> EdgeBearing | None:
         edge, diagonal, config = self.graph.by_pair.get(pair), self.assembly.diagonal, self.config.bearing
@@ -74,8 +75,9 @@ class JudgedAssembly:
     def qualities(self) -> Mapping[Pair, float]:
         """Return how good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
         bearings = {pair: found for pair in self.graph.by_pair if (found := self.bearing(pair)) is not None}
-        pins = find_pins(self.assembly, self.graph, bearings, self.config)
-        return edge_qualities(self.graph, assembly_stats(self.assembly), bearings, pins)
+        stats = assembly_stats(self.assembly)
+        pins = find_pins(self.assembly, self.graph, stats, bearings, self.config)
+        return edge_qualities(self.graph, stats, bearings, pins)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,7 +104,7 @@ class JudgedJoint:
 
     @property
     def _pair(self) -> Pair:
-        return _pair(self.joint.parent, self.joint.child)
+        return pair(self.joint.parent, self.joint.child)
 
     @property
     def _config(self) -> JointsConfig:
@@ -111,19 +113,18 @@ class JudgedJoint:
     @property
     def size(self) -> float:
         """Diagonal of the child [m]."""
-        return self.whole.frames[self.joint.child].diagonal
+        return self.whole.scenes.frames[self.joint.child].diagonal
 
     @cached_property
     def scene(self) -> JointScene:
         """The two bodies."""
-        whole, edge = self.whole, (self.joint.parent, self.joint.child)
-        bearing = whole.bearing(self._pair)
-        return joint_scene(whole.cache, whole.tree, whole.frames, edge, bearing, config=self._config)
+        edge = self.joint.parent, self.joint.child
+        return self.whole.scenes.scene(edge, self.whole.bearing(self._pair))
 
     @cached_property
     def proposed(self) -> Hypotheses:
         """Candidates that the inference would weigh, and the declared line."""
-        return propose(self.scene, self._config, (self._line,))
+        return propose(self.scene, (self._line,))
 
     @property
     def _line(self) -> Line:
@@ -132,7 +133,7 @@ class JudgedJoint:
     @cached_property
     def features(self) -> Features:
         """What is measured of the candidates, which takes most of the time."""
-        return features_of(self.scene, self.proposed, self._config, _RIVALS)
+        return features_of(self.scene, self.proposed, _RIVALS)
 
     @cached_property
     def posterior(self) -> Posterior:
@@ -208,7 +209,7 @@ class JudgedJoint:
     def _away(self, every: Hypotheses) -> FloatArray:
         """Distances of candidates from the declared line, fractions of the child's diagonal, shape (h,)."""
         beside = lengths_of(crossed(every.pivots - self.joint.pivot, self.joint.axis))
-        return np.asarray((not self.slides) * beside / self.size)
+        return (not self.slides) * beside / self.size
 
     @cached_property
     def best(self) -> int:
@@ -283,7 +284,7 @@ def _parent_evidence(whole: JudgedAssembly, joint: TrueJoint) -> ParentEvidence:
     compared = (*others, joint.parent) if others else ()  # qualities take a tenth of the stage
     quality = {body: _quality(whole, joint.child, body) for body in compared}
     best = max(others, key=lambda body: quality[body], default=None)
-    edge = whole.graph.by_pair.get(_pair(joint.child, joint.parent))
+    edge = whole.graph.by_pair.get(pair(joint.child, joint.parent))
     return ParentEvidence(
         touches=edge is not None and not edge.bridge,
         quality=quality.get(joint.parent, 0.0),
@@ -293,14 +294,10 @@ def _parent_evidence(whole: JudgedAssembly, joint: TrueJoint) -> ParentEvidence:
 
 
 def _quality(whole: JudgedAssembly, child: int, body: int) -> float:
-    edge = whole.graph.by_pair.get(_pair(child, body))
+    edge = whole.graph.by_pair.get(pair(child, body))
     if edge is None or edge.bridge:
         return 0.0
-    return whole.qualities[_pair(child, body)]
-
-
-def _pair(first: int, second: int) -> Pair:
-    return min(first, second), max(first, second)
+    return whole.qualities[pair(child, body)]
 
 
 def _given(every: Hypotheses) -> BoolArray:

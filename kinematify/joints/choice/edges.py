@@ -2,7 +2,7 @@
 
 A spanning tree T has the probability exp(sum of s_e over its edges) / Z, where s_e = w . x_e is linear in the
 measurements x_e and Z sums over all spanning trees of the contact graph (matrix-tree theorem, Kirchhoff 1847). The fit
-maximised the likelihood of the true trees (`benchmarks/fit/edges.py`). The most likely tree is the maximum spanning
+maximised the likelihood of the true trees (`benchmarks/fit/edge_fit.py`). The most likely tree is the maximum spanning
 tree of s, and so of every growing function of it.
 """
 
@@ -15,8 +15,6 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
 from kinematify.errors import EnvironmentFault
 
@@ -27,36 +25,32 @@ if TYPE_CHECKING:
     from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.features.pins import EdgePins
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray
 
 EDGE_WEIGHTS = "edges.json"
-FORMAT = 2
-"""Raised where the meaning of the file changes."""
 MEASUREMENTS = (
-    "bearing", "clear_bearing", "log_bearing", "best_of_smaller", "best_of_larger", "log_gap", "bridge", "log_share",
-    "log_wide_share", "of_largest_contact", "of_smaller_contacts", "of_larger_contacts", "twins", "bearing_of_twins",
-    "log_hull_ratio", "size", "inside", "journal",
+    "bearing", "clear_bearing", "log_bearing", "log_gap", "bridge", "log_wide_share",
+    "of_largest_contact", "of_smaller_contacts", "of_larger_contacts", "twins", "bearing_of_twins", "log_hull_ratio",
+    "size", "inside", "journal", "along_larger", "rim_of_larger",
 )  # fmt: skip
 """Columns of `edge_measurements`."""
-_NEAR, _WIDE = 1.0, 8.0  # tolerances of the contact within which area counts
+_WIDE = 8.0  # tolerances of the contact within which area counts, too
 _LOWEST = -18.0  # scores below the best by more than this are equally unlikely
 _SOFT = 2.0  # the quality is a growing function of s; half of it keeps apart what is beyond doubt
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeWeights:
-    """A linear score of edges; arrays of shape (k,)."""
+    """A linear score of edges."""
 
-    measurements: tuple[str, ...]
-    mean: FloatArray
-    scale: FloatArray
     weights: FloatArray
+    """Of `MEASUREMENTS`, shape (k,)."""
+    offset: float
     provenance: Mapping[str, Any]
 
     def scores(self, measured: FloatArray) -> FloatArray:
         """``s_e`` of measurements of shape (m, k), shape (m,)."""
-        found: FloatArray = ((measured - self.mean) / self.scale) @ self.weights
-        return found
+        return np.asarray(measured @ self.weights + self.offset)
 
 
 def edge_qualities(
@@ -75,8 +69,7 @@ def edge_qualities(
 def scores_of(qualities: FloatArray) -> FloatArray:
     """``s_e`` of qualities in [0, 1], the inverse of what `edge_qualities` does; shape (m,)."""
     bounded = np.clip(qualities, 1e-6, 1.0 - 1e-6)
-    found: FloatArray = _SOFT * np.log(bounded / (1.0 - bounded))
-    return found
+    return np.asarray(_SOFT * np.log(bounded / (1.0 - bounded)))
 
 
 def edge_probabilities(pairs: Sequence[Pair], scores: FloatArray, n: int) -> tuple[FloatArray, float]:
@@ -97,9 +90,7 @@ def edge_probabilities(pairs: Sequence[Pair], scores: FloatArray, n: int) -> tup
     np.add.at(laplacian, (a, b), -weights)
     np.add.at(laplacian, (b, a), -weights)
     np.fill_diagonal(laplacian, -laplacian.sum(axis=1))
-    # A constant added within each piece makes the Laplacian regular and changes no resistance.
-    label = connected_components(csr_matrix(laplacian), directed=False)[1]
-    inverse = np.linalg.inv(laplacian + (label[:, None] == label[None]))
+    inverse = np.linalg.pinv(laplacian, rcond=1e-13, hermitian=True)
     resistance = inverse[a, a] + inverse[b, b] - 2.0 * inverse[a, b]
     log_z = float(np.linalg.slogdet(laplacian[1:, 1:])[1]) + (n - 1) * highest
     return np.clip(weights * resistance, 0.0, 1.0), log_z
@@ -120,36 +111,30 @@ def edge_measurements(
         return np.empty((0, len(MEASUREMENTS)))
     bounds = np.array([item.bounds for item in stats])
     hulls = np.array([item.hull_volume for item in stats])
-    diagonal = float(np.linalg.norm(bounds[:, 1].max(axis=0) - bounds[:, 0].min(axis=0)))
+    diagonal = np.linalg.norm(bounds[:, 1].max(axis=0) - bounds[:, 0].min(axis=0))
     a, b = np.array(list(graph.by_pair)).T
     small, large = np.where(hulls[a] < hulls[b], (a, b), (b, a))
     extents = bounds[:, 1] - bounds[:, 0] + 1e-9 * diagonal
     faces = 2.0 * (extents * np.roll(extents, 1, axis=1)).sum(axis=1)
-    smaller_faces = np.minimum(faces[a], faces[b])
 
-    lines = [bearings[pair].lines if pair in bearings else () for pair in graph.by_pair]
-    score = np.array([items[0].score if items else 0.0 for items in lines])
-    best = _largest_of_parts(len(stats), a, b, score)
+    found = [bearings.get(pair) for pair in graph.by_pair]
+    score = np.array([item.lines[0].score if item and item.lines else 0.0 for item in found])
     gap = np.array([edge.gap for edge in graph.edges])
-    area = np.array([_mutual_area(edge, _NEAR * graph.tolerance) for edge in graph.edges])
-    wide = np.array([_mutual_area(edge, _WIDE * graph.tolerance) for edge in graph.edges])
-    total = np.bincount(np.concatenate([a, b]), np.concatenate([area, area]), minlength=len(stats))
-    label = np.array(graph.cluster_of)
-    twins = ((label[a] >= 0) & (label[a] == label[b])).astype(np.float64)
+    near = [[_near(edge, times * graph.tolerance) for edge in graph.edges] for times in (1.0, _WIDE)]
+    area, wide = (np.sqrt([one[1].sum() * other[1].sum() for one, other in sides]) for sides in near)
+    total = np.bincount(np.concatenate([a, b]), np.tile(area, 2), minlength=len(stats))
+    twins = graph.alike.kind[a] == graph.alike.kind[b]
     common = np.minimum(bounds[a, 1], bounds[b, 1]) - np.maximum(bounds[a, 0], bounds[b, 0]) + 1e-9 * diagonal
-    inside = np.clip(common, 0.0, None).prod(axis=1) / np.minimum(extents[a].prod(axis=1), extents[b].prod(axis=1))
     bearing = score / (score + 0.02)
+    inside = np.clip(common, 0.0, None).prod(axis=1) / np.minimum(extents[a].prod(axis=1), extents[b].prod(axis=1))
     return np.column_stack(
         [
             bearing,
             score / (score + 0.2),
             np.log10(score + 1e-3),
-            score >= best[small],
-            score >= best[large],
             np.log10(gap / diagonal + 1e-4),
             np.array([edge.bridge for edge in graph.edges]),
-            np.log10(area / smaller_faces + 1e-4),
-            np.log10(wide / smaller_faces + 1e-4),
+            np.log10(wide / np.minimum(faces[a], faces[b]) + 1e-4),
             np.sqrt(area / max(float(area.max()), 1e-300)),
             area / np.maximum(total[small], 1e-300),
             area / np.maximum(total[large], 1e-300),
@@ -159,23 +144,32 @@ def edge_measurements(
             np.linalg.norm(bounds[small, 1] - bounds[small, 0], axis=1) / diagonal,
             np.minimum(inside, 1.0),
             np.array([edge in pins.journals for edge in graph.by_pair]),
+            np.array([_line(one, other, bounds[part]) for (one, other), part in zip(near[0], large, strict=True)]),
         ]
-    ).astype(np.float64)
+    )
 
 
-def _largest_of_parts(n: int, a: IntArray, b: IntArray, values: FloatArray) -> FloatArray:
-    """Largest value over the edges of each part, shape (n,)."""
-    found = np.zeros(n)
-    np.maximum.at(found, a, values)
-    np.maximum.at(found, b, values)
-    return found
+_Side = tuple["FloatArray", "FloatArray"]
+"""Points [m] and areas [m^2] of one part of an edge that are near the other part."""
 
 
-def _mutual_area(edge: ContactEdge, reach: float) -> float:
-    """Geometric mean of the two areas within `reach` [m] of the other part, or a fifth beyond the gap [m^2]."""
-    reach = max(reach, 1.2 * edge.gap)
-    near = [float(side.areas[side.distances <= reach].sum()) for side in (edge.samples_a, edge.samples_b)]
-    return float(np.sqrt(near[0] * near[1]))
+def _near(edge: ContactEdge, reach: float) -> list[_Side]:
+    """What of either part is within `reach` [m] of the other one, or a fifth beyond the gap."""
+    near = [(side, side.distances <= max(reach, 1.2 * edge.gap)) for side in (edge.samples_a, edge.samples_b)]
+    return [(side.points[kept], side.areas[kept]) for side, kept in near]
+
+
+def _line(one: _Side, other: _Side, bounds: FloatArray) -> tuple[float, float]:
+    """How far what is near runs along a box and how far out in it that lies, in [0, 1]: both are 1 under a hinge."""
+    points, areas = map(np.concatenate, zip(one, other, strict=True))
+    if areas.sum() <= 0.0:
+        return 0.0, 0.0
+    spread, axes = np.linalg.eigh(np.cov(points.T, aweights=areas, ddof=0))
+    along, extents = axes[:, 2], np.ptp(bounds, axis=0) + 1e-12
+    aside = np.average(points, axis=0, weights=areas) - bounds.mean(axis=0)
+    aside -= (aside @ along) * along
+    length = np.sqrt(12.0 * max(spread[2], 0.0)) / (np.abs(along) @ extents)
+    return min(float(length), 1.0), min(float(2.0 * (aside @ aside) / (np.abs(aside) @ extents + 1e-300)), 1.0)
 
 
 @cache
@@ -185,16 +179,16 @@ def shipped_edge_weights() -> EdgeWeights:
     Raises:
         EnvironmentFault: Their file is missing, damaged or of another version.
     """
-    remedy = "Install kinematify again, or write the weights with 'python -m benchmarks.fit'."
     try:
         stored = json.loads((files("kinematify.joints.choice") / EDGE_WEIGHTS).read_text(encoding="utf-8"))
-        if stored["format"] != FORMAT or tuple(stored["measurements"]) != MEASUREMENTS:
-            raise EnvironmentFault(
-                f"The weights of the tree's edges ({EDGE_WEIGHTS}) are of format {stored['format']} and of "
-                f"{len(stored['measurements'])} measurements; this version of kinematify reads format {FORMAT} with "
-                f"{len(MEASUREMENTS)}. {remedy}"
-            )
-        arrays = {key: np.array(stored[key], dtype=np.float64) for key in ("mean", "scale", "weights")}
-        return EdgeWeights(measurements=MEASUREMENTS, provenance=stored["provenance"], **arrays)
+        weights = stored["weights"]
+        if tuple(weights) != MEASUREMENTS:
+            raise ValueError(f"they are of {len(weights)} measurements, not of the {len(MEASUREMENTS)} of this version")
+        return EdgeWeights(
+            weights=np.array(list(weights.values())), offset=stored["offset"], provenance=stored["provenance"]
+        )
     except (OSError, ValueError, KeyError) as error:
-        raise EnvironmentFault(f"The weights of the tree's edges ({EDGE_WEIGHTS}) cannot be read. {remedy}") from error
+        raise EnvironmentFault(
+            f"The weights of the tree's edges ({EDGE_WEIGHTS}) cannot be read: {error}. Install kinematify again, or "
+            "write the weights with 'python -m benchmarks.fit.edge_fit'."
+        ) from error

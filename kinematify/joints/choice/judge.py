@@ -13,13 +13,12 @@ from kinematify.joints.candidate import FIXED, SLIDE, TURN, JointCandidate, Join
 from kinematify.joints.choice.opening import rigid_odds
 from kinematify.joints.choice.scorer import shipped_scorer
 from kinematify.joints.features.workspace import point_cloud
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config import ConfidenceConfig
-    from kinematify.contact.graph import ContactGraph
-    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.features.columns import Features
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
@@ -95,7 +94,7 @@ class Posterior:
     def _apart(self) -> FloatArray:
         """Distance of the pivot of each hypothesis from the line of each other one [m], shape (h, h)."""
         h = self.hypotheses
-        return np.asarray(np.linalg.norm(np.cross(h.pivots[:, None] - h.pivots[None], h.axes[:, None]), axis=2))
+        return np.asarray(lengths_of(crossed(h.pivots[:, None] - h.pivots[None], h.axes[:, None])))
 
     @cached_property
     def _same(self) -> BoolArray:
@@ -153,7 +152,7 @@ def rightness(degrees: FloatArray, apart: FloatArray) -> FloatArray:
         degrees: Angle between its direction and the true one [deg].
         apart: Distance of its line from the true one, in diagonals of the child; 0 for slides. Same shape.
     """
-    return np.asarray(np.exp(-((degrees / _ANGLE) ** 2) - (apart / _DISTANCE) ** 2))
+    return np.exp(-((degrees / _ANGLE) ** 2) - (apart / _DISTANCE) ** 2)
 
 
 def judge(features: Features, config: ConfidenceConfig) -> Posterior:
@@ -226,24 +225,6 @@ def _said_of(word: str, *, otherwise: int | None) -> int | None:
 
 
 _LEAST = 1.0e-6  # probability of a type, so that one part alone cannot rule a type out for all
-
-
-def alike_edges(graph: ContactGraph, tree: KinematicTree) -> list[list[tuple[int, int]]]:
-    """Edges whose children are congruent, on one parent or on congruent ones, in groups of two or more.
-
-    Args:
-        graph: Contact graph with clusters of congruent parts.
-        tree: Parent of every part.
-
-    Returns:
-        Groups of (parent, child).
-    """
-    groups: dict[tuple[int, int, int], list[tuple[int, int]]] = {}
-    for parent, child in tree.edges():
-        cluster, above = graph.cluster_of[child], graph.cluster_of[parent]
-        if cluster >= 0:
-            groups.setdefault((cluster, above, parent if above < 0 else -1), []).append((parent, child))
-    return [group for group in groups.values() if len(group) > 1]
 
 
 def agreed(kinds: Sequence[IntArray], likely: Sequence[FloatArray]) -> list[FloatArray]:

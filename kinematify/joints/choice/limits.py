@@ -18,6 +18,7 @@ from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import Sweep, moving_points, slide_clearance, slide_paths, turn_paths
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -85,7 +86,7 @@ class Range:
         return {"free_forward": self.free[0].motion, "free_backward": self.free[1].motion}
 
 
-def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
+def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: FloatArray) -> Range:
     """Sweep the chosen joint both ways against all parts that do not move with it.
 
     Args:
@@ -93,62 +94,61 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
         kind: Chosen type.
         axis: Unit direction, shape (3,).
         pivot: Point on the axis [m], shape (3,).
-        config: Bounds.
     """
     if kind is JointType.FIXED:
         none = LimitEnd(0.0, "")
         return Range(kind=kind, sign=1.0, back=none, ahead=none, free=(none, none))
     if kind is JointType.PRISMATIC:
-        return _slide_range(scene, axis, config)
-    return _turn_range(scene, axis, pivot, config)
+        return _slide_range(scene, axis)
+    return _turn_range(scene, axis, pivot)
 
 
-def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
-    ways = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
+def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Range:
+    ways = _free_turn(scene, axis, pivot, (scene.parent, *scene.others))
     free = np.array([way.motion for way in ways])
     if is_continuous(scene, axis, pivot, free):
         none, half, sign = LimitEnd(np.inf, ""), LimitEnd(np.pi, ""), clockwise_sign(scene, axis)
         return Range(kind=JointType.CONTINUOUS, sign=sign, back=none, ahead=none, free=(half, half))
-    if scene.fold is not None and abs(float(axis @ scene.fold.axis)) > np.cos(np.radians(config.limits.square_deg)):
+    if scene.fold is not None and abs(float(axis @ scene.fold.axis)) > np.cos(
+        np.radians(scene.config.limits.square_deg)
+    ):
         return _rocker_range(scene, axis, ways)
     if scene.pedal_direction.any() and abs(float(axis @ UP)) < 0.1:
-        return _pedal_range(scene, axis, pivot, ways, config)
+        return _pedal_range(scene, axis, pivot, ways)
     furniture = scene.mechanism <= 0.5
     if furniture and scene.panel:
-        return _panel_range(scene, axis, pivot, ways, config)
-    sign = turn_sign(scene, axis, pivot, free, config.limits)
+        return _panel_range(scene, axis, pivot, ways)
+    sign = turn_sign(scene, axis, pivot, free, scene.config.limits)
     forward, backward = ways if sign > 0 else ways[::-1]
-    usual, blocked = _usual(config.limits.panel_deg), free.max() < np.radians(config.limits.stopped_deg)
+    usual, blocked = _usual(scene.config.limits.panel_deg), free.max() < np.radians(scene.config.limits.stopped_deg)
     # What is blocked both ways overlaps its neighbours, or is fixed: the sweep says nothing of its range.
     back, ahead = AS_GIVEN, usual if blocked else min(forward, usual)
     if not blocked and (scene.has_bearing or not furniture):
-        back, ahead = backward, _from_stop(scene, forward, backward, config)
+        back, ahead = backward, _from_stop(scene, forward, backward)
     if not scene.serial:  # whose links are stopped by what is not in the mesh, too
-        back, ahead = (_usual(config.limits.unmet_deg) if end.motion >= np.pi else end for end in (back, ahead))
+        back, ahead = (_usual(scene.config.limits.unmet_deg) if end.motion >= np.pi else end for end in (back, ahead))
     return _range(sign, back, ahead, ways)
 
 
-def _free_turn(
-    scene: JointScene, axis: FloatArray, pivot: FloatArray, obstacles: Sequence[int], config: JointsConfig
-) -> Ways:
+def _free_turn(scene: JointScene, axis: FloatArray, pivot: FloatArray, obstacles: Sequence[int]) -> Ways:
     """Free angle towards + and -."""
-    points = moving_points(scene.cache, scene.child, config.sweep)
-    paths = turn_paths(scene.cache, points, axis[None], pivot[None], limit=np.pi, config=config.sweep)
-    return free_ways(scene, obstacles, [paths.against((part,)) for part in obstacles], config.sweep.share)
+    points = moving_points(scene.cache, scene.child, scene.config.sweep)
+    paths = turn_paths(scene.cache, points, axis[None], pivot[None], limit=np.pi, config=scene.config.sweep)
+    return free_ways(scene, obstacles, [paths.against((part,)) for part in obstacles], scene.config.sweep.share)
 
 
 def _usual(degrees: float) -> LimitEnd:
     return LimitEnd(float(np.radians(degrees)), USUAL)
 
 
-def _from_stop(scene: JointScene, forward: LimitEnd, backward: LimitEnd, config: JointsConfig) -> LimitEnd:
+def _from_stop(scene: JointScene, forward: LimitEnd, backward: LimitEnd) -> LimitEnd:
     """Upper limit of what turns freely: what has a stop opens to a right angle from there at most, as panels do.
 
     Blades of scissors, arms of glasses and ribs of umbrellas meet nothing on the way round, and none goes round.
     Links that hang on moving ones are left alone unless they stand at the stop, for knees and elbows stop one way, too;
     and so is what has no pin, as a handle that folds back.
     """
-    limits = config.limits
+    limits = scene.config.limits
     right = _usual(limits.panel_deg)
     if backward.motion < np.radians(limits.stopped_deg):
         return min(forward, right)
@@ -178,24 +178,26 @@ def _rocker_range(scene: JointScene, axis: FloatArray, free: Ways) -> Range:
     return _range(sign, backward, forward, free)
 
 
-def _pedal_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways, config: JointsConfig) -> Range:
+def _pedal_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways) -> Range:
     """A pedal goes down, by no more than a lever does."""
-    sign = 1.0 if float(np.cross(axis, scene.centre - pivot)[2]) < 0.0 else -1.0
-    return _range(sign, AS_GIVEN, min(free[0 if sign > 0 else 1], _usual(config.limits.lever_deg)), free)
+    sign = 1.0 if float(crossed(axis, scene.centre - pivot)[2]) < 0.0 else -1.0
+    return _range(sign, AS_GIVEN, min(free[0 if sign > 0 else 1], _usual(scene.config.limits.lever_deg)), free)
 
 
 # ---- panels --------------------------------------------------------------------------------------------------------
 
 
-def _panel_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways, config: JointsConfig) -> Range:
+def _panel_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways) -> Range:
     """A door or lid: it opens away from where it lies on its body, to a right angle beyond that place."""
-    limits, right = config.limits, _usual(config.limits.panel_deg)
+    limits, right = scene.config.limits, _usual(scene.config.limits.panel_deg)
     if max(free).motion < np.radians(limits.blocked_deg):
         # Something lies on it or stands before it, which is moved away first (a lid on a seat).
-        free = _free_turn(scene, axis, pivot, (scene.parent,), config)
+        free = _free_turn(scene, axis, pivot, (scene.parent,))
     angles = np.array([way.motion for way in free])
-    closing = closing_turns(scene, axis, pivot, angles, config)
-    sign = -float(np.sign(closing[0])) if len(closing) == 1 else turn_sign(scene, axis, pivot, angles, config.limits)
+    closing = closing_turns(scene, axis, pivot, angles)
+    sign = (
+        -float(np.sign(closing[0])) if len(closing) == 1 else turn_sign(scene, axis, pivot, angles, scene.config.limits)
+    )
     forward, backward = free if sign > 0 else free[::-1]
     if len(closing) == 2:
         return _range(sign, min(backward, right), min(forward, right), free)
@@ -207,9 +209,7 @@ def _panel_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: W
     return _range(sign, AS_GIVEN, right if blocked else min(forward, right), free)
 
 
-def closing_turns(
-    scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig
-) -> tuple[float, ...]:
+def closing_turns(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> tuple[float, ...]:
     """Signed angles [rad] by which a panel that stands open turns to lie along its body; none where it is closed.
 
     An open panel touches its body at the hinge alone and stands askew, or upright on top of it. Of the ways to get
@@ -221,15 +221,14 @@ def closing_turns(
         axis: Unit direction of the hinge, shape (3,).
         pivot: Point on it [m], shape (3,).
         free: Free angle towards + and - [rad], shape (2,).
-        config: Bounds.
     """
-    limits = config.limits
-    if _touches_elsewhere(scene, axis, pivot, config):
+    limits = scene.config.limits
+    if _touches_elsewhere(scene, axis, pivot):
         return ()
     now = _gap(scene, axis, pivot, 0.0)
-    turns, square = _square_turns(scene, axis, config)
+    turns, square = _square_turns(scene, axis)
     found = sorted((_gap(scene, axis, pivot, turn) / now, turn) for turn in turns)
-    possible = [pair for pair in found if pair[0] < limits.closer and _can_turn(*pair, free, config)]
+    possible = [pair for pair in found if pair[0] < limits.closer and _can_turn(*pair, free, scene.config)]
     if len(possible) > 1 and possible[1][1] * possible[0][1] < 0.0 and possible[0][0] > limits.closer * possible[1][0]:
         return possible[0][1], possible[1][1]
     if square and not (_stands_on_top(scene, axis) and possible and possible[0][0] < limits.lying):
@@ -247,7 +246,7 @@ def _can_turn(ratio: float, turn: float, free: FloatArray, config: JointsConfig)
     return bool(abs(turn) < free[0 if turn > 0 else 1] + overlap)
 
 
-def _square_turns(scene: JointScene, axis: FloatArray, config: JointsConfig) -> tuple[list[float], bool]:
+def _square_turns(scene: JointScene, axis: FloatArray) -> tuple[list[float], bool]:
     """Signed angles [rad] by which a panel turns to get square to its body; and whether it is so as it is."""
     normal = scene.frame.axes[scene.frame.thin]
     turns: list[float] = []
@@ -255,9 +254,9 @@ def _square_turns(scene: JointScene, axis: FloatArray, config: JointsConfig) -> 
         across = face - (face @ axis) * axis
         if np.linalg.norm(across) < 0.9 or abs(float(normal @ axis)) > 0.3:
             continue
-        tilt = float(np.arctan2(np.cross(normal, across) @ axis, normal @ across))
+        tilt = float(np.arctan2(crossed(normal, across) @ axis, normal @ across))
         turns += [tilt, tilt - np.copysign(np.pi, tilt)]
-    least = np.radians(config.limits.square_deg)
+    least = np.radians(scene.config.limits.square_deg)
     others = [turn for turn in turns if least < abs(turn) < np.pi - least]
     return others, len(others) < len(turns)
 
@@ -268,14 +267,14 @@ def _stands_on_top(scene: JointScene, axis: FloatArray) -> bool:
     return bool(scene.upright and abs(float(axis @ UP)) < 0.1 and scene.centre[2] > top)
 
 
-def _touches_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> bool:
+def _touches_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> bool:
     """The panel touches its body away from the hinge, as a closed one does on its frame."""
     if len(scene.contact.points) == 0:
         return False
-    reach = np.linalg.norm(np.cross(scene.cache.samples(scene.child).points - pivot, axis), axis=1).max()
-    apart = np.linalg.norm(np.cross(scene.contact.points - pivot, axis), axis=1)
-    near = (apart < config.panels.hinge_band * reach) @ scene.contact.weights
-    return bool(near < config.panels.ajar_share)
+    reach = np.linalg.norm(crossed(scene.cache.samples(scene.child).points - pivot, axis), axis=1).max()
+    apart = np.linalg.norm(crossed(scene.contact.points - pivot, axis), axis=1)
+    near = (apart < scene.config.panels.hinge_band * reach) @ scene.contact.weights
+    return bool(near < scene.config.panels.ajar_share)
 
 
 def _gap(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: float) -> float:
@@ -288,65 +287,66 @@ def _gap(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: float) ->
 # ---- what slides ---------------------------------------------------------------------------------------------------
 
 
-def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
+def _slide_range(scene: JointScene, axis: FloatArray) -> Range:
     """Sweep a slide both ways, and bound it by what kind of thing slides.
 
     Args:
         scene: The pair.
         axis: Unit direction, shape (3,).
-        config: Bounds.
     """
-    points = moving_points(scene.cache, scene.child, config.sweep)
+    points = moving_points(scene.cache, scene.child, scene.config.sweep)
     # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
     obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
-    paths = slide_paths(scene.cache, points, axis[None], limit=scene.diagonal, config=config.sweep)
+    paths = slide_paths(scene.cache, points, axis[None], limit=scene.diagonal, config=scene.config.sweep)
     swept = [paths.against((part,)) for part in obstacles]
-    ways = free_ways(scene, obstacles, swept, config.sweep.share)
+    ways = free_ways(scene, obstacles, swept, scene.config.sweep.share)
     free = np.array([way.motion for way in ways])
     length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
-    runs = _in_linkage(scene) or _is_runner(scene, axis, free, length, config)
+    runs = _in_linkage(scene) or _is_runner(scene, axis, free, length)
     guided = ways
     if runs:
-        guided = _guided(scene, axis, ways[0], length, config), _guided(scene, -axis, ways[1], length, config)
+        guided = _guided(scene, axis, ways[0], length), _guided(scene, -axis, ways[1], length)
     limited = np.array([way.motion for way in guided])
-    sign = _slide_sign(scene, axis, limited if _in_linkage(scene) else free, config)
+    sign = _slide_sign(scene, axis, limited if _in_linkage(scene) else free)
     ways, guided = (ways, guided) if sign > 0 else (ways[::-1], guided[::-1])
     way = sign * axis
     if runs:
         ahead, back = guided
     elif (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.has_bearing and _outwards(scene, way) < 0.0):
         # It overlaps the pocket that it is in: a few of its points say nothing of the floor.
-        floor = free_ways(scene, obstacles, swept, config.limits.pressed_share)[0 if sign > 0 else 1]
-        ahead, back = min(floor, _press(scene, way, length, config)), AS_GIVEN
+        floor = free_ways(scene, obstacles, swept, scene.config.limits.pressed_share)[0 if sign > 0 else 1]
+        ahead, back = min(floor, _press(scene, way, length)), AS_GIVEN
     else:
-        ahead, back = _ends(scene, way, ways, length, config)
-    ahead = max(ahead, LimitEnd(config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
+        ahead, back = _ends(scene, way, ways, length)
+    ahead = max(ahead, LimitEnd(scene.config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
     return Range(kind=JointType.PRISMATIC, sign=sign, back=back, ahead=ahead, free=ways)
 
 
-def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float, config: JointsConfig) -> Ways:
+def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float) -> Ways:
     """Ends of a drawer or lid that opens along a direction, ahead and back; `free` likewise."""
     forward, backward = free
     ajar = min(backward, LimitEnd(_standing_out(scene, direction), "flush with the body"))
-    ajar = ajar if ajar.motion > config.limits.ajar * length else AS_GIVEN
-    return min(forward, LimitEnd(config.limits.drawer * length - ajar.motion, USUAL)), ajar
+    ajar = ajar if ajar.motion > scene.config.limits.ajar * length else AS_GIVEN
+    return min(forward, LimitEnd(scene.config.limits.drawer * length - ajar.motion, USUAL)), ajar
 
 
-def _guided(scene: JointScene, direction: FloatArray, free: LimitEnd, length: float, config: JointsConfig) -> LimitEnd:
+def _guided(scene: JointScene, direction: FloatArray, free: LimitEnd, length: float) -> LimitEnd:
     """Travel along `direction` up to the next stop, or until the guide lets the part go.
 
     Where no guide is seen, by as much of its own length as drawers travel.
     """
-    guided = guided_travel(scene, direction, config)
-    return min(free, LimitEnd(config.limits.drawer * length, USUAL) if guided is None else LimitEnd(guided, GUIDE))
+    guided = guided_travel(scene, direction)
+    return min(
+        free, LimitEnd(scene.config.limits.drawer * length, USUAL) if guided is None else LimitEnd(guided, GUIDE)
+    )
 
 
-def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float, config: JointsConfig) -> bool:
+def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float) -> bool:
     """A small part that can slide farther than it is long without leaving its guide: a collar on a rod, no button."""
     if scene.smallness < 1.0 or _is_small_lid(scene):
         return False
-    ways = (guided_travel(scene, sign * axis, config) or 0.0 for sign in (1.0, -1.0))
-    return bool(max(min(*pair) for pair in zip(free, ways, strict=True)) > config.guide.runner * length)
+    ways = (guided_travel(scene, sign * axis) or 0.0 for sign in (1.0, -1.0))
+    return bool(max(min(*pair) for pair in zip(free, ways, strict=True)) > scene.config.guide.runner * length)
 
 
 def _standing_out(scene: JointScene, direction: FloatArray) -> float:
@@ -361,22 +361,22 @@ def _standing_out(scene: JointScene, direction: FloatArray) -> float:
     return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
 
 
-def _press(scene: JointScene, direction: FloatArray, length: float, config: JointsConfig) -> LimitEnd:
+def _press(scene: JointScene, direction: FloatArray, length: float) -> LimitEnd:
     """Travel of a button pressed along a direction that nothing stops: what stands out of its surroundings."""
     own = scene.cache.samples(scene.child).points
     body = scene.cache.samples(scene.parent).points
     centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
-    wide = 2.0 * float(np.linalg.norm(np.cross(own - centre, direction), axis=1).max())
-    around = body[np.linalg.norm(np.cross(body - centre, direction), axis=1) < wide]
+    wide = 2.0 * float(lengths_of(crossed(own - centre, direction)).max())
+    around = body[lengths_of(crossed(body - centre, direction)) < wide]
     visible = length
     if len(around) > 10:
         visible = min(length, max(float((around @ direction).min() - (own @ direction).min()), 0.0))
     # A stem behind the cap is no travel: what is flush is pressed by a share of its length or width.
     whole = min(length, wide)
-    return LimitEnd(config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
+    return LimitEnd(scene.config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
 
 
-def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> float:
+def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray) -> float:
     """Drawers and lids leave by the longer way, outwards if both are alike; buttons go in.
 
     What sits in a bore and has room behind it is pressed in, as a button that stands out before its pocket; a stopper
@@ -384,12 +384,12 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
     """
     outwards = _outwards(scene, axis)
     longer = 1.0 if free[0] > free[1] else -1.0
-    one_way = abs(float(free[0] - free[1])) > config.limits.one_way * scene.diagonal
+    one_way = abs(float(free[0] - free[1])) > scene.config.limits.one_way * scene.diagonal
     if scene.smallness >= 1.0 and not (scene.has_bearing or _in_linkage(scene)) and one_way:
         return -longer  # there is a floor below a button and nothing before it; round ones and collars are split below
     if scene.has_bearing and not _in_linkage(scene) and not _is_sheath(scene, axis):
-        clearance = slide_clearance(scene, outwards * axis, config)
-        if clearance is not None and config.limits.room * scene.frame.diagonal < clearance[1] < np.inf:
+        clearance = slide_clearance(scene, outwards * axis)
+        if clearance is not None and scene.config.limits.room * scene.frame.diagonal < clearance[1] < np.inf:
             return -outwards
     if scene.smallness > 0.5 and not _in_linkage(scene) and not _is_small_lid(scene):
         return -outwards
@@ -406,7 +406,7 @@ def _is_sheath(scene: JointScene, axis: FloatArray) -> bool:
         return False
     across = contact.normals - (contact.normals @ axis)[:, None] * axis
     inwards = np.einsum("ij,ij->i", across, contact.points - contact.centroid) < 0.0
-    aside = np.linalg.norm(across, axis=1) > 0.5
+    aside = lengths_of(across) > 0.5
     return bool(contact.weights @ (inwards & aside) > 0.8 * max(float(contact.weights @ aside), 1e-12))
 
 
@@ -425,7 +425,7 @@ def _outwards(scene: JointScene, axis: FloatArray) -> float:
     return 1.0 if float((scene.centre - scene.parent_frame.centre) @ axis) >= 0.0 else -1.0
 
 
-def guided_travel(scene: JointScene, direction: FloatArray, config: JointsConfig) -> float | None:
+def guided_travel(scene: JointScene, direction: FloatArray) -> float | None:
     """Return how far the child slides along `direction` before its guide lets it go [m]; None where no guide is seen.
 
     The guide is the surface of the contact that runs along the way. A carriage keeps all of its own surface on a long
@@ -435,27 +435,23 @@ def guided_travel(scene: JointScene, direction: FloatArray, config: JointsConfig
     Args:
         scene: The pair.
         direction: Unit direction of travel, shape (3,).
-        config: `guide`, and `limits.drawer` as the share of the way out that a telescope goes.
     """
-    travels = np.linspace(0.0, scene.diagonal, config.guide.steps + 1)
-    shares = guided_share(scene, direction, travels, config)
-    if shares is None or shares[0] < config.guide.kept:
+    travels = np.linspace(0.0, scene.diagonal, scene.config.guide.steps + 1)
+    shares = guided_share(scene, direction, travels)
+    if shares is None or shares[0] < scene.config.guide.kept:
         return None
-    leaves = _first_below(travels, shares, config.guide.kept)
-    gone = _first_below(travels, shares, config.guide.gone)
-    return max(leaves, config.limits.drawer * gone)
+    leaves = _first_below(travels, shares, scene.config.guide.kept)
+    gone = _first_below(travels, shares, scene.config.guide.gone)
+    return max(leaves, scene.config.limits.drawer * gone)
 
 
-def guided_share(
-    scene: JointScene, direction: FloatArray, travels: FloatArray, config: JointsConfig
-) -> FloatArray | None:
+def guided_share(scene: JointScene, direction: FloatArray, travels: FloatArray) -> FloatArray | None:
     """Share of the guide that still lies on the other part after each travel.
 
     Args:
         scene: The pair.
         direction: Unit direction, shape (3,).
         travels: [m], shape (n,).
-        config: `guide` and the band of a contact.
 
     Returns:
         The larger of the shares of both parts in [0, 1], shape (n,); None where the contact is not such.
@@ -464,7 +460,7 @@ def guided_share(
     if edge is None:
         return None
     # Of small parts, the band of a contact is as wide as they are long.
-    reach = edge.gap + min(config.contact_band * scene.diagonal, config.guide.band * scene.frame.diagonal)
+    reach = edge.gap + min(scene.config.contact_band * scene.diagonal, scene.config.guide.band * scene.frame.diagonal)
     contact = scene.contact
     sides = (
         (scene.parent, contact.points, contact.normals, direction),
@@ -472,11 +468,11 @@ def guided_share(
     )
     shares = []
     for other, points, normals, motion in sides:
-        along = points[np.abs(normals @ direction) < np.sin(np.radians(config.guide.along_deg))]
+        along = points[np.abs(normals @ direction) < np.sin(np.radians(scene.config.guide.along_deg))]
         guiding = along[scene.cache.distances(other, along) <= reach] if len(along) else along
-        if len(guiding) < config.guide.least_samples:
+        if len(guiding) < scene.config.guide.least_samples:
             return None
-        thinned = guiding[:: max(1, len(guiding) // config.guide.samples)]
+        thinned = guiding[:: max(1, len(guiding) // scene.config.guide.samples)]
         moved = (thinned[None] + travels[:, None, None] * motion).reshape(-1, 3)
         shares.append((scene.cache.distances(other, moved) <= reach).reshape(len(travels), -1).mean(axis=1))
     return np.asarray(np.maximum(*shares))

@@ -18,8 +18,8 @@ import numpy as np
 from kinematify.joints.candidate import ELSEWHERE, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.measurements import GROUPS, MeasuredHypotheses, measure
-from kinematify.robot.vectors import lengths_of
+from kinematify.joints.features.measurements import MeasuredHypotheses, measure
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -45,8 +45,7 @@ def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Val
         Name -> value of the turn about `axis` and of that about its opposite, shape (2,).
     """
     measured = MeasuredHypotheses(scene, _both_ways(axis, pivot), sided=True)
-    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
-    return {**found, **_leads_to(measured)}
+    return {**measure(measured), **_leads_to(measured)}
 
 
 def _both_ways(axis: FloatArray, pivot: FloatArray) -> Hypotheses:
@@ -82,7 +81,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
 def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
     """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
     velocity = m.velocity(point[None])[:, 0]
-    return np.asarray(velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None])
+    return velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None]
 
 
 # ---- conventions ---------------------------------------------------------------------------------------------------
@@ -99,7 +98,7 @@ def default_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: F
     """
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
-    rises = float(np.cross(axis, scene.centre - pivot) @ UP)
+    rises = float(crossed(axis, scene.centre - pivot) @ UP)
     if abs(rises) < 0.05 * scene.frame.diagonal:
         return swing_sign(scene, axis, pivot)
     return 1.0 if rises > 0.0 else -1.0
@@ -116,7 +115,7 @@ def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
     centroids, areas = np.array([part.centroid for part in parts]), np.array([part.area for part in parts])
     moving = np.setdiff1d(np.arange(len(parts)), (scene.parent, *scene.others))
     limb = np.average(centroids[moving], axis=0, weights=areas[moving])
-    velocity = np.cross(axis, limb - pivot)
+    velocity = crossed(axis, limb - pivot)
     speed = float(np.linalg.norm(velocity))
     if speed < 0.05 * scene.frame.diagonal:
         return neutral_sign(scene, axis)
@@ -216,16 +215,9 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
-    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, _both_ways(axis, pivot))
-    columns = np.stack([turning_columns(measured, row, scorer.measurements) for row in range(2)])
-    odds = float(np.sort(scorer.sums(columns)).mean()) / scorer.temperature
+    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(MeasuredHypotheses(scene, _both_ways(axis, pivot)))
+    odds = float(np.sort(scorer.sums(columns_of(measured, scorer.measurements, 2))).mean()) / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
-
-
-def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
-    """Return what the trees read of one hypothesis, shape (n,)."""
-    known = {name: measured[name][row : row + 1] for name in names if name in measured}
-    return np.asarray(columns_of(known, names, 1)[0])
 
 
 def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:

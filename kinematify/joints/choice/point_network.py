@@ -101,7 +101,7 @@ def swish(values: FloatArray) -> FloatArray:
     """The activation x / (1 + exp(-x)) (Elfwing et al. 2018)."""
     result = np.exp(-values)
     result += 1.0
-    return np.asarray(np.divide(values, result, out=result))
+    return np.divide(values, result, out=result)
 
 
 POINT_INPUTS, LINE_INPUTS = 20, 10
@@ -249,4 +249,4 @@ def _outwards(away: FloatArray, axes: FloatArray, arms: FloatArray) -> FloatArra
     found = any_across
     for direction, least in ((apart, 1e-3), (up, _LEVEL), (arms, _OFF_LINE)):
         found = np.where(lengths_of(direction)[:, None] > least, direction, found)
-    return np.asarray(found / lengths_of(found)[:, None])
+    return found / lengths_of(found)[:, None]

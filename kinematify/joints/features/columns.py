@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import SLIDE, TURN, joined
-from kinematify.joints.features.measurements import measure_groups
+from kinematify.joints.features.measurements import MeasuredHypotheses, measure_groups
 from kinematify.joints.features.slide_cues import rank_slides
 from kinematify.joints.features.turn_cues import rank_turns
 from kinematify.joints.features.type_cues import type_cues, type_odds
@@ -17,7 +17,6 @@ from kinematify.joints.features.type_cues import type_cues, type_odds
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.config import JointsConfig
     from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.measurements import Values
@@ -61,25 +60,24 @@ class Features:
         return 1 + int(slides * (self.hypotheses.kinds == TURN).sum())
 
 
-def features_of(scene: JointScene, proposed: Hypotheses, config: JointsConfig, rivals: int | None = None) -> Features:
+def features_of(scene: JointScene, proposed: Hypotheses, rivals: int | None = None) -> Features:
     """Measure the hypotheses of an edge.
 
     Args:
         scene: The pair.
         proposed: Its joints, of which those that were given have no say in the type.
-        config: Thresholds and sweeps.
         rivals: So many of each type, which cues rank first, are measured beside those that were given; all if absent.
     """
-    turns = rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), config).first(rivals)
-    slides = rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), config).first(rivals)
+    turns = rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), scene.config).first(rivals)
+    slides = rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), scene.config).first(rivals)
     hypotheses = joined(proposed.at(np.array([0])), turns.lines, slides.lines)
     return Features(
         scene=scene,
         hypotheses=hypotheses,
         groups={
-            **measure_groups(scene, hypotheses),
+            **measure_groups(MeasuredHypotheses(scene, hypotheses)),
             CUES: _cues(scene, turns, slides),
-            VERDICTS: _verdicts(scene, turns, slides, config),
+            VERDICTS: _verdicts(scene, turns, slides),
         },
         free_parent=np.concatenate([np.zeros((1, 2)), turns.free_parent, slides.free_parent]),
     )
@@ -107,13 +105,13 @@ def _cues(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
     }
 
 
-def _verdicts(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> Values:
+def _verdicts(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
     """Return what the weighted sums of cues say of each hypothesis, and the cues of the type, (h,) each.
 
     They were written while objects were looked at. Half of what is fitted does not see them.
     """
     n, m, proposed = len(turns.scores), len(slides.scores), (turns.proposed, slides.proposed)
-    cues = type_cues(scene, *proposed, config)
+    cues = type_cues(scene, *proposed, scene.config)
     odds = float(np.clip(type_odds(cues), -_ODDS, _ODDS))
     facts = {f"{TYPE}{name}": value for name, value in cues.items()}
     facts["retired"] = 0.0  # stands for the cues that went after the fit; the next one reads nothing of it

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.contact.graph import pair
 from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
 from kinematify.joints.features.frames import UP, body_axes, box_frame, find_fold
-from kinematify.joints.features.journal import facing_faces, find_journal
+from kinematify.joints.features.journal import held_journal
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    from kinematify.config import FrontCuesConfig, JointsConfig, RailsConfig
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.config import FrontCuesConfig, JointsConfig
     from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.bearings.scores import Rail
     from kinematify.joints.features.frames import BoxFrame, Fold
     from kinematify.joints.features.journal import Journal
     from kinematify.joints.features.workspace import ContactView, PartCache
@@ -80,84 +81,321 @@ class Handle:
     """Unit direction of a long handle, zero for a short one, shape (3,)."""
 
 
+class TreeScenes:
+    """A tree of parts, and what all scenes of its edges share."""
+
+    def __init__(self, cache: PartCache, tree: KinematicTree, config: JointsConfig) -> None:
+        """Find the box frames of the parts.
+
+        Args:
+            cache: The parts.
+            tree: Parent of every part.
+            config: Weights and thresholds.
+        """
+        self.cache, self.tree, self.config = cache, tree, config
+        root = cache.samples(tree.root)
+        body = body_axes(root.normals, root.areas)
+        self.frames: dict[int, BoxFrame] = {}
+        """Box frame of every part; that of the root prefers the upright frame of the body, others their parent's."""
+        for part, above in [(tree.root, -1), *((child, parent) for parent, child in tree.edges())]:
+            preferred = [body] if above < 0 else [self.frames[above].axes, body]
+            self.frames[part] = box_frame(cache.corners(part), cache.samples(part), preferred, config.frames)
+
+    def scene(self, edge: tuple[int, int], bearing: EdgeBearing | None) -> JointScene:
+        """The edge (parent, child), whose contact has a bearing."""
+        return JointScene(whole=self, parent=edge[0], child=edge[1], fitted=bearing)
+
+    def rolls(self, part: int) -> bool:
+        """True if a part is a disc standing on the floor on which the whole object stands."""
+        assembly, frame = self.cache.assembly, self.frames[part]
+        level = abs(float(frame.axes[frame.thin] @ UP)) < 0.1
+        lowest = assembly.parts[part].bounds[0, 2] - assembly.bounds[0, 2]
+        return bool(level and lowest < 0.01 * self.cache.diagonal and self.disc(part) > 0.5)
+
+    def disc(self, part: int) -> float:
+        """Return how round a part is seen along its thin direction, 0 for a square, 1 for a disc."""
+        frame = self.frames[part]
+        plane = np.delete(np.arange(3), frame.thin)
+        flat = frame.local(self.cache.samples(part).points)[:, plane] - (frame.centre @ frame.axes.T)[plane]
+        angles = np.arctan2(flat[:, 1], flat[:, 0])
+        sector = np.floor((angles + np.pi) / (2 * np.pi) * 16).astype(np.int64) % 16
+        radius = np.zeros(16)
+        np.maximum.at(radius, sector, np.linalg.norm(flat, axis=1))
+        ratio = float(radius.min() / max(float(radius.max()), 1e-12))
+        return float(np.clip((ratio - 0.75) / 0.15, 0.0, 1.0))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JointScene:
-    """One tree edge with everything that the cues look at; lengths in metres, world frame."""
+    """One tree edge with everything that the cues look at, each when first asked for; metres, world frame."""
 
-    cache: PartCache
+    whole: TreeScenes
     parent: int
     child: int
-    frame: BoxFrame
-    """Box frame of the child."""
-    parent_frame: BoxFrame
-    """Box frame of the parent, along its own axes."""
-    upright_axes: FloatArray
-    """Upright axes of the whole object, one per row, shape (3, 3)."""
-    body_box: FloatArray
-    """Lower and upper corner of the parent along the child's axes [m], shape (2, 3)."""
-    contact: ContactView
-    others: tuple[int, ...]
-    """Obstacles besides the parent: every part outside the child's subtree."""
-    outward: FloatArray
-    """Unit normal of the panel away from the body along the child's thin direction, zero if undecided, shape (3,)."""
-    handle: Handle | None
-    smallness: float
-    """1 for a part that is small beside its parent, 0 for a large one."""
-    panel: bool
-    """The slab is thin, and the part is not small."""
-    plate: bool
-    """The slab is thin, whatever its size."""
-    disc: float
-    """How round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
-    upright: bool
-    """The thin direction lies flat, as in a closed door."""
-    flat: bool
-    """The thin direction points up, as in a closed lid."""
-    bearing: EdgeBearing | None
-    """Its first line is the journal where there is one."""
-    journal: Journal | None
-    """The line about which the parent holds the child all around; not looked for in trees of joints in series."""
-    serial: bool
-    """The tree has several joints in series, as arms, legs and hands have."""
-    has_bearing: bool
-    """The best line of the bearing passes the gate."""
-    prismatic_score: float
-    """1 where both sides of the contact are extruded far more clearly than they are round, as on a linear guide."""
-    rail_lead: float
-    """Score of the contact's rail over that of its best line; 0 without a rail."""
-    is_round: bool
-    """The contact is about as round as it is extruded, or more."""
-    compact: float
-    """1 where the contact is a small patch of the child, as in a machine's joint; 0 where it is spread out."""
-    mechanism: float
-    """1 in a linkage (compact contact, or a tree of several joints in series), 0 for furniture."""
-    on_top: bool
-    """The child lies above most of its parent."""
-    parent_moves: bool
-    """The parent is itself moved by a joint."""
-    enclosed: float
-    """Share of the six directions from the child's centre in which the parent stands in the way."""
-    covered: bool
-    """The parent stands above the child's centre as well as below it."""
-    inside: float
-    """Share of the child's surface that lies inside the parent's box."""
-    rolls: bool
-    """The child is a disc standing on the floor."""
-    fold: Fold | None
-    """Where the front of the child is folded as a rocker's; not looked for in large lids, which may have a ridge."""
-    front: FloatArray
-    """Of lids, level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
-    pedal_direction: FloatArray
-    """Level direction from the parent to the child where that is a pedal, else zero, shape (3,)."""
-    depth: int
-    """Joints from the root to the child."""
-    twins: tuple[BoxFrame, ...]
-    """Box frames of congruent siblings that carry nothing; none where the child itself carries something."""
+    fitted: EdgeBearing | None
+    """Bearing of the contact, as it was fitted."""
+
+    @property
+    def cache(self) -> PartCache:
+        """Samples and distances of all parts."""
+        return self.whole.cache
+
+    @property
+    def config(self) -> JointsConfig:
+        """Weights and thresholds."""
+        return self.whole.config
+
+    @property
+    def frame(self) -> BoxFrame:
+        """Box frame of the child."""
+        return self.whole.frames[self.child]
+
+    @property
+    def parent_frame(self) -> BoxFrame:
+        """Box frame of the parent, along its own axes."""
+        return self.whole.frames[self.parent]
+
+    @property
+    def diagonal(self) -> float:
+        """Diagonal of the assembly [m]."""
+        return self.cache.diagonal
+
+    @property
+    def centre(self) -> FloatArray:
+        """Centre of the child's slab, shape (3,)."""
+        return self.frame.centre
+
+    @cached_property
+    def body_box(self) -> FloatArray:
+        """Lower and upper corner of the parent along the child's axes [m], shape (2, 3)."""
+        local = self.frame.local(self.cache.corners(self.parent))
+        return np.stack([local.min(axis=0), local.max(axis=0)])
+
+    @cached_property
+    def contact(self) -> ContactView:
+        """Where the child touches its parent."""
+        return self.cache.contact(self.parent, self.child, self.config.contact_band * self.diagonal)
 
     @property
     def anchor(self) -> FloatArray:
         """Centroid of the contact, the child's centre without one [m], shape (3,)."""
         return self.contact.centroid if len(self.contact.points) else self.centre
+
+    @cached_property
+    def others(self) -> tuple[int, ...]:
+        """Obstacles besides the parent: every part outside the child's subtree."""
+        moving = self.whole.tree.subtree(self.child)
+        return tuple(part for part in range(len(self.whole.tree.parents)) if part != self.parent and part not in moving)
+
+    @cached_property
+    def outward(self) -> FloatArray:
+        """Unit normal of the panel away from the body along the child's thin direction, zero if undecided, (3,)."""
+        frame, body, k = self.frame, self.body_box, self.frame.thin
+        middle = 0.5 * (frame.slab_lower[k] + frame.slab_upper[k])
+        to_lower, to_upper = middle - body[0, k], body[1, k] - middle
+        if abs(to_lower - to_upper) < 0.1 * (body[1, k] - body[0, k]):
+            return np.zeros(3)
+        return np.asarray(frame.axes[k] * (1.0 if to_upper < to_lower else -1.0))
+
+    @cached_property
+    def handle(self) -> Handle | None:
+        """Bump beyond the slab (on the outer side if that is known), else the parts that hang on the child."""
+        points, frame = self.cache.samples(self.child).points, self.frame
+        height, k = frame.local(points)[:, frame.thin], frame.thin
+        margin = 0.02 * float(np.max(frame.extents))
+        above, below = height > frame.slab_upper[k] + margin, height < frame.slab_lower[k] - margin
+        side = float(self.outward @ frame.axes[k])
+        bump = above if side > 0 else below if side < 0 else above | below
+        if bump.sum() >= max(4, 0.001 * len(points)):
+            return _handle_of(points[bump], frame)
+        hanging = [self.cache.samples(part).points for part in self.whole.tree.children[self.child]]
+        return _handle_of(np.concatenate(hanging), frame) if hanging else None
+
+    @cached_property
+    def smallness(self) -> float:
+        """1 for a part that is small beside its parent, 0 for a large one."""
+        none, full = self.config.small_none, self.config.small_full
+        ratio = self.frame.diagonal / max(self.parent_frame.diagonal, 1e-12)
+        return float(np.clip((none - ratio) / (none - full), 0.0, 1.0))
+
+    @property
+    def panel(self) -> bool:
+        """The slab is thin, and the part is not small."""
+        return self.plate and self.smallness < 1.0
+
+    @cached_property
+    def plate(self) -> bool:
+        """The slab is thin, whatever its size; narrow doors of fridges are thick, but high."""
+        sides, thin = np.sort(self.frame.extents), self.config.panel_thinness
+        if sides[0] < thin * sides[1]:
+            return True
+        thick = sides[0] < self.config.thick_door * sides[1]
+        return bool(self.upright and thick and sides[0] < thin * np.sqrt(sides[1] * sides[2]))
+
+    @cached_property
+    def disc(self) -> float:
+        """How round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
+        return self.whole.disc(self.child)
+
+    @property
+    def _thin_up(self) -> float:
+        return abs(float(self.frame.axes[self.frame.thin] @ UP))
+
+    @property
+    def upright(self) -> bool:
+        """The thin direction lies flat, as in a closed door."""
+        return self._thin_up < self.config.upright_cosine
+
+    @property
+    def flat(self) -> bool:
+        """The thin direction points up, as in a closed lid."""
+        return self._thin_up > self.config.flat_cosine
+
+    @cached_property
+    def bearing(self) -> EdgeBearing | None:
+        """Bearing of the contact; its first line is the journal where there is one."""
+        return self.fitted if self.journal is None else _with_journal(self.fitted, self, self.journal)
+
+    @cached_property
+    def journal(self) -> Journal | None:
+        """The line about which the parent holds the child all around; not looked for in trees of joints in series."""
+        size = float(self.frame.extents.max())
+        return None if self.serial else held_journal(self.cache, self.parent, self.child, size, self.config)
+
+    @cached_property
+    def serial(self) -> bool:
+        """The tree has several joints in series, as arms, legs and hands have."""
+        return max(self.whole.tree.depths) >= self.config.serial_depth
+
+    @cached_property
+    def has_bearing(self) -> bool:
+        """The best line of the bearing passes the gate."""
+        return self.journal is not None or (
+            self.bearing is not None and passes_gate(self.bearing, self.contact, self.config)
+        )
+
+    @property
+    def rail(self) -> Rail | None:
+        """Direction along which the contact is extruded."""
+        return None if self.bearing is None else self.bearing.rail
+
+    @cached_property
+    def rail_lead(self) -> float:
+        """Score of the contact's rail over that of its best line; 0 without a rail."""
+        if self.bearing is None or self.rail is None:
+            return 0.0
+        return self.rail.score / max(self.bearing.best_score, 1e-3)
+
+    @cached_property
+    def prismatic_score(self) -> float:
+        """1 where both sides of the contact are extruded far more clearly than they are round, as on a linear guide."""
+        rails = self.config.rails
+        if self.rail is None or self.rail_lead == 0.0:
+            return 0.0
+        strong = np.interp(self.rail.score, (rails.score_none, rails.score_full), (0.0, 1.0))
+        return float(strong * np.interp(self.rail_lead, (rails.lead_none, rails.lead_full), (0.0, 1.0)))
+
+    @property
+    def _is_round(self) -> bool:
+        """The contact is about as round as it is extruded, or more; where it is neither, that says nothing."""
+        rails = self.config.rails
+        if self.bearing is None or self.bearing.best_score < rails.rounded_least:
+            return False
+        return 0.0 < self.rail_lead < rails.rounded_lead
+
+    @cached_property
+    def compact(self) -> float:
+        """1 where the contact is a small patch of the child, as in a machine's joint; 0 where it is spread out."""
+        contact, none = self.contact, self.config.spread_none
+        if len(contact.points) == 0:
+            return 0.0
+        spread = np.sqrt(contact.weights @ np.sum((contact.points - contact.centroid) ** 2, axis=1))
+        ratio = spread / (0.5 * self.frame.diagonal)
+        return float(np.clip((none - ratio) / (none - self.config.spread_full), 0.0, 1.0))
+
+    @property
+    def mechanism(self) -> float:
+        """1 in a linkage (compact contact, or a tree of several joints in series), 0 for furniture."""
+        return 1.0 if self.serial else self.compact
+
+    @property
+    def on_top(self) -> bool:
+        """The child lies above most of its parent."""
+        low, high = self.cache.assembly.parts[self.parent].bounds[:, 2]
+        return bool(self.centre[2] > low + 0.75 * (high - low))
+
+    @property
+    def parent_moves(self) -> bool:
+        """The parent is itself moved by a joint."""
+        return self.parent != self.whole.tree.root
+
+    @cached_property
+    def _walls(self) -> BoolArray:
+        """Whether the parent is in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame."""
+        steps = self.diagonal * np.concatenate([self.frame.axes, -self.frame.axes])
+        return np.isfinite(self.cache.first_hits(self.parent, np.tile(self.centre, (6, 1)), steps))
+
+    @property
+    def enclosed(self) -> float:
+        """Share of the six directions from the child's centre in which the parent stands in the way."""
+        return float(self._walls.mean())
+
+    @property
+    def covered(self) -> bool:
+        """The parent stands above the child's centre as well as below it."""
+        upright = np.abs(np.concatenate([self.frame.axes, -self.frame.axes]) @ UP) > self.config.flat_cosine
+        return bool(self._walls[upright].all())
+
+    @cached_property
+    def inside(self) -> float:
+        """Share of the child's surface that lies inside the parent's box."""
+        local, (low, high) = self.frame.local(self.cache.samples(self.child).points), self.body_box
+        margin = 0.01 * np.max(high - low)
+        return float(np.all((local > low + margin) & (local < high - margin), axis=1).mean())
+
+    @cached_property
+    def rolls(self) -> bool:
+        """The child is a disc standing on the floor."""
+        return self.whole.rolls(self.child)
+
+    @cached_property
+    def fold(self) -> Fold | None:
+        """Where the front of the child is folded as a rocker's; not looked for in large lids, which may be ridged."""
+        if not self.plate or (self.panel and self.on_top and self.flat):
+            return None
+        return find_fold(self.cache.samples(self.child), self.frame, self.config.rockers)
+
+    @property
+    def _stands(self) -> bool:
+        """The parent reaches the floor, or nearly so, as a bin on wheels."""
+        bounds = self.cache.assembly.bounds
+        rise = self.cache.assembly.parts[self.parent].bounds[0, 2] - bounds[0, 2]
+        return bool(rise < self.config.front_cues.low * np.ptp(bounds[:, 2]))
+
+    @cached_property
+    def front(self) -> FloatArray:
+        """Of lids, level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
+        if not (self.panel and self.flat and self._stands):
+            return np.zeros(3)
+        carried = self.whole.tree.children[self.parent]
+        rolling, frames = map(self.whole.rolls, carried), [self.whole.frames[part] for part in carried]
+        body = self.cache.assembly.parts[self.parent].bounds
+        return front_of(body, frames, [*rolling], self.config.front_cues)
+
+    @cached_property
+    def pedal_direction(self) -> FloatArray:
+        """Level direction from the parent to the child where that is a pedal, else zero, shape (3,)."""
+        if not is_level_plate(self.frame) or not self._stands:
+            return np.zeros(3)
+        return foot_side(self.frame, self.cache.assembly.parts[self.parent].bounds, self.config.front_cues)
+
+    @cached_property
+    def twins(self) -> tuple[BoxFrame, ...]:
+        """Box frames of congruent siblings that carry nothing; none where the child itself carries something."""
+        tree = self.whole.tree
+        alike = () if tree.children[self.child] else self.cache.graph.alike.others(self.child)
+        siblings = (part for part in alike if tree.parents[part] == self.parent and not tree.children[part])
+        return tuple(self.whole.frames[part] for part in siblings)
 
     @cached_property
     def gripping(self) -> bool:
@@ -170,13 +408,15 @@ class JointScene:
             return False
         (twin,) = self.twins
         apart_line = twin.centre - self.centre
-        apart_line = apart_line / max(float(np.linalg.norm(apart_line)), 1e-12)
+        distance = float(np.linalg.norm(apart_line))
+        apart_line = apart_line / max(distance, 1e-12)
         closing = abs(float(apart_line @ self.frame.axes[self.frame.thin]))
         parallel = abs(float(apart_line @ twin.axes[twin.thin]))
         facing = min(closing, parallel) > np.cos(np.radians(3.0)) and not self.plate and self.smallness < 1.0
-        chain_end = (self.depth >= 2 and self.smallness < 1.0) or facing  # buttons of a door are no fingers
-        apart = float(np.linalg.norm(twin.centre - self.centre)) < 2.0 * float(self.parent_frame.extents.max())
-        return bool(chain_end and self.inside < 0.8 and apart and not self.has_bearing and not self.is_round)
+        # Buttons of a door are no fingers.
+        chain_end = (self.whole.tree.depths[self.child] >= 2 and self.smallness < 1.0) or facing
+        apart = distance < 2.0 * float(self.parent_frame.extents.max())
+        return bool(chain_end and self.inside < 0.8 and apart and not self.has_bearing and not self._is_round)
 
     @property
     def grips(self) -> FloatArray:
@@ -185,163 +425,21 @@ class JointScene:
         long_enough = [offset for offset in offsets if np.linalg.norm(offset) > 1e-6 * self.diagonal]
         return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
 
-    @property
-    def diagonal(self) -> float:
-        """Diagonal of the assembly [m]."""
-        return self.cache.diagonal
 
-    @property
-    def centre(self) -> FloatArray:
-        """Centre of the child's slab, shape (3,)."""
-        return self.frame.centre
-
-
-def _rail_lead(bearing: EdgeBearing | None) -> float:
-    """Score of the contact's rail over that of its best line; 0 without a rail."""
-    if bearing is None or bearing.rail is None:
-        return 0.0
-    best = bearing.lines[0].score if bearing.lines else 0.0
-    return bearing.rail.score / max(best, 1e-3)
-
-
-def _is_round(bearing: EdgeBearing | None, config: RailsConfig) -> bool:
-    """True if the contact is about as round as it is extruded, or more; where it is neither, that says nothing."""
-    if bearing is None or not bearing.lines or bearing.lines[0].score < config.rounded_least:
-        return False
-    return 0.0 < _rail_lead(bearing) < config.rounded_lead
-
-
-def _prismatic_score(bearing: EdgeBearing | None, config: RailsConfig) -> float:
-    lead = _rail_lead(bearing)
-    if lead == 0.0 or bearing is None or bearing.rail is None:
-        return 0.0
-    strong = np.interp(bearing.rail.score, (config.score_none, config.score_full), (0.0, 1.0))
-    leading = np.interp(lead, (config.lead_none, config.lead_full), (0.0, 1.0))
-    return float(strong * leading)
-
-
-def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> dict[int, BoxFrame]:
-    """Box frame of every part, parents before children; the root prefers the upright frame of the body."""
-    root = cache.samples(tree.root)
-    body = body_axes(root.normals, root.areas)
-    frames: dict[int, BoxFrame] = {}
-    for part, above in [(tree.root, -1), *((child, parent) for parent, child in tree.edges())]:
-        preferred = [body] if above < 0 else [frames[above].axes, body]
-        vertices = cache.assembly.parts[part].vertices[np.unique(cache.assembly.parts[part].faces)]
-        frames[part] = box_frame(vertices, cache.samples(part), preferred, config.frames)
-    return frames
-
-
-def joint_scene(
-    cache: PartCache,
-    tree: KinematicTree,
-    frames: Mapping[int, BoxFrame],
-    edge: tuple[int, int],
-    bearing: EdgeBearing | None,
-    *,
-    config: JointsConfig,
-) -> JointScene:
-    """Gather what the cues need for the tree edge (parent, child)."""
-    parent, child = edge
-    frame = frames[child]
-    local = frame.local(cache.assembly.parts[parent].vertices[np.unique(cache.assembly.parts[parent].faces)])
-    body_box = np.stack([local.min(axis=0), local.max(axis=0)])
-    outward = _outward(frame, body_box)
-    smallness = _smallness(frames[parent], frame, config)
-    contact = cache.contact(parent, child, config.contact_band * cache.diagonal)
-    compact = _compactness(frame, contact, config)
-    walls = _walls(cache, parent, frame)
-    low, high = cache.assembly.parts[parent].bounds[:, 2]
-    serial = max(tree.depths) >= config.serial_depth
-    sides = np.sort(frame.extents)
-    up = abs(float(frame.axes[frame.thin] @ UP))
-    moving = _subtree(tree, child)
-    journal = None if serial else _journal(cache, parent, child, frame, config)
-    if journal is not None:
-        bearing = _with_journal(bearing, edge, journal)
-    plate = _is_plate(sides, up < config.upright_cosine, config)
-    panel = plate and smallness < 1.0
-    on_top = bool(frame.centre[2] > low + 0.75 * (high - low))
-    folds = plate and not (panel and on_top and up > config.flat_cosine)
-    return JointScene(
-        cache=cache,
-        parent=parent,
-        child=child,
-        frame=frame,
-        parent_frame=frames[parent],
-        upright_axes=cache.upright_axes,
-        body_box=body_box,
-        contact=contact,
-        others=tuple(i for i in range(len(tree.parents)) if i != parent and i not in moving),
-        outward=outward,
-        handle=_handle(cache, tree, child, frame, outward),
-        smallness=smallness,
-        panel=panel,
-        plate=plate,
-        disc=_disc(cache, child, frame),
-        upright=up < config.upright_cosine,
-        flat=up > config.flat_cosine,
-        bearing=bearing,
-        journal=journal,
-        serial=serial,
-        has_bearing=journal is not None or (bearing is not None and passes_gate(bearing, contact, config)),
-        prismatic_score=_prismatic_score(bearing, config.rails),
-        rail_lead=_rail_lead(bearing),
-        is_round=_is_round(bearing, config.rails),
-        compact=compact,
-        mechanism=1.0 if serial else compact,
-        on_top=on_top,
-        parent_moves=parent != tree.root,
-        enclosed=float(walls.mean()),
-        covered=bool(walls[np.abs(np.concatenate([frame.axes, -frame.axes]) @ UP) > config.flat_cosine].all()),
-        inside=_inside(cache, child, frame, body_box),
-        rolls=rolls(cache, child, frame),
-        fold=find_fold(cache.samples(child), frame, config.rockers) if folds else None,
-        front=_front(cache, tree, parent, frames, config) if panel and up > config.flat_cosine else np.zeros(3),
-        pedal_direction=_pedal_direction(cache, parent, frame, config),
-        depth=tree.depths[child],
-        twins=tuple(frames[part] for part in _leaf_twins(cache.graph, tree, edge)),
-    )
-
-
-def _leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
-    """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
-    parent, child = edge
-    label = graph.cluster_of[child]
-    if label < 0 or tree.children[child]:
-        return ()
-    return tuple(
-        part
-        for part in graph.clusters[label]
-        if part != child and tree.parents[part] == parent and not tree.children[part]
-    )
-
-
-def _journal(cache: PartCache, parent: int, child: int, frame: BoxFrame, config: JointsConfig) -> Journal | None:
-    """Return what the parent holds the child by, within the band of their contact."""
-    edge = cache.graph.by_pair.get((min(parent, child), max(parent, child)))
-    if edge is None:
-        return None
-    reach = edge.gap + config.contact_band * cache.diagonal
-    facing = facing_faces(cache, parent, child, reach, config.journal)
-    return find_journal(facing, float(frame.extents.max()), config.journal)
-
-
-def _with_journal(bearing: EdgeBearing | None, edge: tuple[int, int], journal: Journal) -> EdgeBearing:
+def _with_journal(bearing: EdgeBearing | None, scene: JointScene, journal: Journal) -> EdgeBearing:
     """The bearing of a contact with the journal as its first line."""
     lines = () if bearing is None else bearing.lines
     first = BearingLine(
         axis=journal.axis,
         pivot=journal.pivot,
-        score=max([line.score for line in lines], default=0.0) + journal.coverage,
-        surface_a=journal.coverage,
-        surface_b=journal.coverage,
-        circles_a=journal.coverage,
-        circles_b=journal.coverage,
+        score=max((line.score for line in lines), default=0.0) + journal.coverage,
+        surfaces=(journal.coverage, journal.coverage),
+        rings=(journal.coverage, journal.coverage),
     )
+    a, b = pair(scene.parent, scene.child)
     return EdgeBearing(
-        a=min(edge),
-        b=max(edge),
+        a=a,
+        b=b,
         centroid=journal.pivot if bearing is None else bearing.centroid,
         lines=(first, *lines),
         rail=None if bearing is None else bearing.rail,
@@ -401,115 +499,6 @@ def located_support(points: FloatArray, normals: FloatArray, weights: FloatArray
     fit = weights * np.exp(-((miss / np.sin(np.radians(3.0))) ** 2))
     across = normals - (normals @ line.axis)[:, None] * line.axis
     return float(2.0 * np.linalg.eigvalsh((across * fit[:, None]).T @ across)[1] / max(float(weights.sum()), 1e-300))
-
-
-def _compactness(frame: BoxFrame, contact: ContactView, config: JointsConfig) -> float:
-    if len(contact.points) == 0:
-        return 0.0
-    spread = np.sqrt(contact.weights @ np.sum((contact.points - contact.centroid) ** 2, axis=1))
-    ratio = spread / (0.5 * frame.diagonal)
-    return float(np.clip((config.spread_none - ratio) / (config.spread_none - config.spread_full), 0.0, 1.0))
-
-
-def _disc(cache: PartCache, part: int, frame: BoxFrame) -> float:
-    """Return how round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
-    plane = np.delete(np.arange(3), frame.thin)
-    flat = frame.local(cache.samples(part).points)[:, plane] - (frame.centre @ frame.axes.T)[plane]
-    angles = np.arctan2(flat[:, 1], flat[:, 0])
-    sector = np.floor((angles + np.pi) / (2 * np.pi) * 16).astype(np.int64) % 16
-    radius = np.zeros(16)
-    np.maximum.at(radius, sector, np.linalg.norm(flat, axis=1))
-    ratio = float(radius.min() / max(float(radius.max()), 1e-12))
-    return float(np.clip((ratio - 0.75) / 0.15, 0.0, 1.0))
-
-
-def rolls(cache: PartCache, part: int, frame: BoxFrame) -> bool:
-    """True if a part is a disc standing on the floor on which the whole object stands."""
-    level = abs(float(frame.axes[frame.thin] @ UP)) < 0.1
-    lowest = cache.assembly.parts[part].bounds[0, 2] - cache.assembly.bounds[0, 2]
-    return bool(level and lowest < 0.01 * cache.diagonal and _disc(cache, part, frame) > 0.5)
-
-
-def _stands(cache: PartCache, part: int, config: JointsConfig) -> bool:
-    """True if a part reaches the floor, or nearly so, as a bin on wheels."""
-    rise = cache.assembly.parts[part].bounds[0, 2] - cache.assembly.bounds[0, 2]
-    return bool(rise < config.front_cues.low * np.ptp(cache.assembly.bounds[:, 2]))
-
-
-def _front(
-    cache: PartCache, tree: KinematicTree, body: int, frames: Mapping[int, BoxFrame], config: JointsConfig
-) -> FloatArray:
-    if not _stands(cache, body, config):
-        return np.zeros(3)
-    carried = tree.children[body]
-    rolling = [rolls(cache, part, frames[part]) for part in carried]
-    return front_of(cache.assembly.parts[body].bounds, [frames[part] for part in carried], rolling, config.front_cues)
-
-
-def _pedal_direction(cache: PartCache, body: int, frame: BoxFrame, config: JointsConfig) -> FloatArray:
-    if not is_level_plate(frame) or not _stands(cache, body, config):
-        return np.zeros(3)
-    return foot_side(frame, cache.assembly.parts[body].bounds, config.front_cues)
-
-
-def _is_plate(sides: FloatArray, upright: bool, config: JointsConfig) -> bool:
-    """True if a slab of these ascending sides is thin; narrow doors of fridges are thick, but high."""
-    if sides[0] < config.panel_thinness * sides[1]:
-        return True
-    thick = sides[0] < config.thick_door * sides[1]
-    return bool(upright and thick and sides[0] < config.panel_thinness * np.sqrt(sides[1] * sides[2]))
-
-
-def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> BoolArray:
-    """Test whether the parent is in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame."""
-    steps = cache.diagonal * np.concatenate([frame.axes, -frame.axes])
-    hits = cache.first_hits(parent, np.tile(frame.centre, (6, 1)), steps)
-    return np.isfinite(hits)
-
-
-def _inside(cache: PartCache, child: int, frame: BoxFrame, body_box: FloatArray) -> float:
-    local = frame.local(cache.samples(child).points)
-    margin = 0.01 * np.max(body_box[1] - body_box[0])
-    return float(np.all((local > body_box[0] + margin) & (local < body_box[1] - margin), axis=1).mean())
-
-
-def _subtree(tree: KinematicTree, part: int) -> set[int]:
-    found, queue = {part}, [part]
-    for node in queue:
-        found.update(tree.children[node])
-        queue.extend(tree.children[node])
-    return found
-
-
-def _smallness(parent: BoxFrame, child: BoxFrame, config: JointsConfig) -> float:
-    ratio = child.diagonal / max(parent.diagonal, 1e-12)
-    return float(np.clip((config.small_none - ratio) / (config.small_none - config.small_full), 0.0, 1.0))
-
-
-def _outward(frame: BoxFrame, body_box: FloatArray) -> FloatArray:
-    """The side of the panel that is nearer to the outside of the body."""
-    k = frame.thin
-    to_lower = 0.5 * (frame.slab_lower[k] + frame.slab_upper[k]) - body_box[0, k]
-    to_upper = body_box[1, k] - 0.5 * (frame.slab_lower[k] + frame.slab_upper[k])
-    if abs(to_lower - to_upper) < 0.1 * (body_box[1, k] - body_box[0, k]):
-        return np.zeros(3)
-    return np.asarray(frame.axes[k] * (1.0 if to_upper < to_lower else -1.0))
-
-
-def _handle(cache: PartCache, tree: KinematicTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
-    """Bump beyond the slab (on the outer side if that is known), else the parts that hang on the child."""
-    points = cache.samples(child).points
-    local = frame.local(points)
-    k = frame.thin
-    margin = 0.02 * float(np.max(frame.extents))
-    above = local[:, k] > frame.slab_upper[k] + margin
-    below = local[:, k] < frame.slab_lower[k] - margin
-    side = float(outward @ frame.axes[k])
-    bump = above if side > 0 else below if side < 0 else above | below
-    if bump.sum() >= max(4, 0.001 * len(points)):
-        return _handle_of(points[bump], frame)
-    hanging = [cache.samples(part).points for part in tree.children[child]]
-    return _handle_of(np.concatenate(hanging), frame) if hanging else None
 
 
 def _handle_of(points: FloatArray, frame: BoxFrame) -> Handle:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
+from kinematify.robot.vectors import crossed
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -56,7 +58,7 @@ class BoxFrame:
     @property
     def centre(self) -> FloatArray:
         """Centre of the slab in the world frame [m], shape (3,)."""
-        return np.asarray(0.5 * (self.slab_lower + self.slab_upper) @ self.axes)
+        return 0.5 * (self.slab_lower + self.slab_upper) @ self.axes
 
     def local(self, points: FloatArray) -> FloatArray:
         """Coordinates of world points (n, 3) in this frame [m]."""
@@ -143,9 +145,9 @@ def _flat_directions(samples: SurfaceSamples, count: int = 6) -> list[FloatArray
 def _rectangle_axes(corners: FloatArray, normal: FloatArray) -> FloatArray:
     """Axes of the smallest rectangle around the points seen along `normal`, which becomes the last row."""
     helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
-    first = np.cross(helper, normal)
+    first = crossed(helper, normal)
     first /= np.linalg.norm(first)
-    plane = np.stack([first, np.cross(normal, first)])
+    plane = np.stack([first, crossed(normal, first)])
     flat = corners @ plane.T
     try:
         outline = flat[ConvexHull(flat).vertices]
@@ -161,7 +163,7 @@ def _rectangle_axes(corners: FloatArray, normal: FloatArray) -> FloatArray:
     v = -s[:, None] * outline[:, 0] + c[:, None] * outline[:, 1]
     best = int(np.argmin(np.ptp(u, axis=1) * np.ptp(v, axis=1)))
     x_axis = c[best] * plane[0] + s[best] * plane[1]
-    return np.stack([x_axis, np.cross(normal, x_axis), normal])
+    return np.stack([x_axis, crossed(normal, x_axis), normal])
 
 
 def _box_volume(corners: FloatArray, axes: FloatArray) -> float:
@@ -223,8 +225,8 @@ class Fold:
     def turns_level(self, face: FloatArray) -> FloatArray:
         """Turns about the fold that bring each half level with a face of this unit normal [rad], shape (2,)."""
         face = face * np.copysign(1.0, self.normals.sum(axis=0) @ face)
-        sines = np.cross(self.normals, face) @ self.axis
-        return np.asarray(np.arctan2(sines, self.normals @ face))
+        sines = crossed(self.normals, face) @ self.axis
+        return np.arctan2(sines, self.normals @ face)
 
 
 def find_fold(samples: SurfaceSamples, frame: BoxFrame, config: RockersConfig) -> Fold | None:
@@ -252,7 +254,7 @@ def _fold_across(
     points: FloatArray, normals: FloatArray, frame: BoxFrame, across: int, config: RockersConfig
 ) -> Fold | None:
     """The fold half-way along one side of the plate, perpendicular to it."""
-    axis = np.cross(frame.axes[frame.thin], frame.axes[across])
+    axis = crossed(frame.axes[frame.thin], frame.axes[across])
     place = (points - frame.centre) @ frame.axes[across]
     lean = np.degrees(np.arcsin(np.clip(normals @ frame.axes[across], -1.0, 1.0)))
     even = np.abs(np.degrees(np.arcsin(np.clip(normals @ axis, -1.0, 1.0)))) < config.even_deg

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from kinematify.contact.graph import pair
 from kinematify.joints.bearings.refine_lines import line_frames
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.config import JournalConfig
+    from kinematify.config import JointsConfig, JournalConfig
     from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
 
@@ -51,6 +53,23 @@ class Facing:
     """[m^2], shape (n,)."""
 
 
+def held_journal(cache: PartCache, parent: int, child: int, size: float, config: JointsConfig) -> Journal | None:
+    """Return what the parent holds the child by, within the band of their contact; None where they have none.
+
+    Args:
+        cache: The parts.
+        parent: Index of the parent.
+        child: Index of the child.
+        size: Largest extent of the child [m].
+        config: The band of contacts, and tolerances of journals.
+    """
+    edge = cache.graph.by_pair.get(pair(parent, child))
+    if edge is None:
+        return None
+    facing = facing_faces(cache, parent, child, edge.gap + config.contact_band * cache.diagonal, config.journal)
+    return find_journal(facing, size, config.journal)
+
+
 def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config: JournalConfig) -> Facing:
     """Faces of the child whose nearest surface of the parent lies straight before them and looks back.
 
@@ -69,8 +88,8 @@ def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config
     lower, upper = cache.assembly.parts[parent].bounds
     near = np.flatnonzero(((centroids > lower - reach) & (centroids < upper + reach)).all(axis=1))
     near = near[:: max(1, -(-len(near) // config.faces))]
-    area_normals = 0.5 * np.cross(corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0])
-    areas = np.linalg.norm(area_normals, axis=1)
+    area_normals = 0.5 * crossed(corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0])
+    areas = lengths_of(area_normals)
     near, area_normals, areas = near[areas > 0], area_normals[areas > 0], areas[areas > 0]
     points, normals = centroids[near], area_normals / areas[:, None]
     distance, closest, other = cache.closest(parent, points)
@@ -113,12 +132,12 @@ def _proposals(
     neighbours = tree.query(facing.points[first], k=min(config.neighbours, len(facing.areas)))[1]
     second = np.take_along_axis(neighbours, rng.integers(neighbours.shape[1], size=(config.pairs, 1)), axis=1)[:, 0]
     n1, n2 = facing.normals[first], facing.normals[second]
-    cross = np.cross(n1, n2)
-    sine = np.linalg.norm(cross, axis=1)
+    cross = crossed(n1, n2)
+    sine = lengths_of(cross)
     good = sine > config.least_sine
     axes = cross[good] / sine[good, None]
     offset = facing.points[second][good] - facing.points[first][good]
-    along = np.einsum("ij,ij->i", np.cross(offset, n2[good]), axes) / sine[good]
+    along = np.einsum("ij,ij->i", crossed(offset, n2[good]), axes) / sine[good]
     return axes, facing.points[first][good] + along[:, None] * n1[good], np.abs(along)
 
 
@@ -150,7 +169,7 @@ def _fitting(facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float,
     """Which faces lie at a radius and look along it, shape (n,)."""
     offset = facing.points - pivot
     radial = offset - (offset @ axis)[:, None] * axis
-    length = np.linalg.norm(radial, axis=1)
+    length = lengths_of(radial)
     along = np.abs(np.einsum("ij,ij->i", radial, facing.normals)) > np.cos(config.normal_tolerance) * length
     return np.asarray(along & (np.abs(length - radius) < config.radius_tolerance * radius))
 
@@ -171,8 +190,8 @@ def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal
         if leaning[0] > config.leaning:
             return None
         axis = directions[:, 0]
-        tangents = np.cross(axis, normals)
-        tangents /= np.maximum(np.linalg.norm(tangents, axis=1), 1e-12)[:, None]
+        tangents = crossed(axis, normals)
+        tangents /= np.maximum(lengths_of(tangents), 1e-12)[:, None]
         system = (tangents * weights[:, None]).T @ tangents
         aim = (tangents * weights[:, None]).T @ np.einsum("ij,ij->i", tangents, points)
         along = float(pivot @ axis)

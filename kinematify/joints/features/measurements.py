@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.contact.graph import pair
+from kinematify.joints.bearings.scores import across_axes
 from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.features.frames import UP
 from kinematify.robot.vectors import crossed, lengths_of
@@ -73,6 +75,10 @@ class MeasuredHypotheses:
         slack = 0.25 * self.unit
         return np.flatnonzero(np.all((points > low - slack) & (points < high + slack), axis=1))
 
+    def of_each(self, value: FloatArray | float) -> FloatArray:
+        """A value of each hypothesis, shape (h,), of one that may be the same of all."""
+        return value if isinstance(value, np.ndarray) else np.full(len(self.hypotheses), float(value))
+
     @cached_property
     def arms(self) -> FloatArray:
         """From each line to the child's centre, across the line [m], shape (h, 3)."""
@@ -95,7 +101,7 @@ class MeasuredHypotheses:
     def radii(self, points: FloatArray) -> FloatArray:
         """Distances of points (n, 3) from each line [m], shape (h, n)."""
         h = self.hypotheses
-        return np.asarray(lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None])))
+        return lengths_of(crossed(points[None] - h.pivots[:, None], h.axes[:, None]))
 
     def velocity(self, points: FloatArray) -> FloatArray:
         """First motion of points (n, 3) by each hypothesis, shape (h, n, 3); zero for fixed."""
@@ -181,12 +187,13 @@ def turned_about(points: FloatArray, lines: Hypotheses, angles: FloatArray) -> F
 # ---- measurements --------------------------------------------------------------------------------------------------
 
 Values = dict[str, "FloatArray"]
+_Found = dict[str, "FloatArray | float"]  # a number where all hypotheses have the same
 
 
-def motion(m: MeasuredHypotheses) -> Values:
+def motion(m: MeasuredHypotheses) -> _Found:
     """Free travel each way, by what newly overlaps: the parent, the rest, and the parent's own points in the child."""
     rows = np.arange(len(m.hypotheses))
-    result: Values = {}
+    result: _Found = {}
     for name, shares in m.blocked.items():
         best, worst = shares[rows, m.better], shares[rows, 1 - m.better]
         for k in range(best.shape[1]):
@@ -195,7 +202,7 @@ def motion(m: MeasuredHypotheses) -> Values:
     return result
 
 
-def contact_motion(m: MeasuredHypotheses) -> Values:
+def contact_motion(m: MeasuredHypotheses) -> _Found:
     """Return how much of the contact is kept, and what gap opens, after a small and a larger step either way."""
     h, scene = m.hypotheses, m.scene
     own = m.child.points[m.few]
@@ -203,7 +210,7 @@ def contact_motion(m: MeasuredHypotheses) -> Values:
     points = np.concatenate([own, touching])
     before = scene.cache.distances(scene.parent, points)
     tolerance = 0.01 * m.unit
-    result: Values = {}
+    result: _Found = {}
     values = np.zeros((len(h), 2, 2, 3))
     for side, k, amounts in m.steps:
         if k not in (1, _OPEN):
@@ -222,7 +229,7 @@ def contact_motion(m: MeasuredHypotheses) -> Values:
     return result
 
 
-def sliding_surface(m: MeasuredHypotheses) -> Values:
+def sliding_surface(m: MeasuredHypotheses) -> _Found:
     """Share of the contact, and of the whole child, that slides along itself under the first motion."""
     contact, few, every = m.scene.contact, m.few_parent, slice(None, None, max(1, len(m.child.points) // 400))
     ones = np.ones(len(contact.parent_points)) / max(len(contact.parent_points), 1)
@@ -235,9 +242,9 @@ def sliding_surface(m: MeasuredHypotheses) -> Values:
     }
 
 
-def _slips(m: MeasuredHypotheses, name: str, points: FloatArray, normals: FloatArray, weights: FloatArray) -> Values:
+def _slips(m: MeasuredHypotheses, name: str, points: FloatArray, normals: FloatArray, weights: FloatArray) -> _Found:
     if len(points) == 0:
-        return {f"slip_{name}": np.ones(len(m.hypotheses)), f"slide_share_{name}": np.zeros(len(m.hypotheses))}
+        return {f"slip_{name}": 1.0, f"slide_share_{name}": 0.0}
     if len(points) > 400:
         stride = len(points) // 400
         points, normals, weights = points[::stride], normals[::stride], weights[::stride]
@@ -253,44 +260,38 @@ def _slips(m: MeasuredHypotheses, name: str, points: FloatArray, normals: FloatA
     return {f"slip_{name}": rms, f"slide_share_{name}": share, f"lateral_{name}": round_share}
 
 
-def bearing(m: MeasuredHypotheses) -> Values:
+def bearing(m: MeasuredHypotheses) -> _Found:
     """Support of the bearing that proposed the line, or lies nearest to it, and of the rail along it."""
     h, scene = m.hypotheses, m.scene
-    count = len(h)
-    names = ("score", "surface", "circles", "surface_least", "circles_least")
-    values: Values = {f"bearing_{name}": np.zeros(count) for name in names}
-    values["bearing_axis"] = np.zeros(count)
-    best = 0.0
+    names = ("score", "surface", "circles", "surface_least", "circles_least", "axis")
+    values: _Found = {f"bearing_{name}": np.zeros(len(h)) for name in names}
     found = scene.bearing.lines if scene.bearing is not None else ()
     for line in found:
         cosine = np.abs(h.axes @ line.axis)
-        apart = lengths_of(np.cross(line.pivot - h.pivots, line.axis)) / m.unit
+        apart = lengths_of(crossed(line.pivot - h.pivots, line.axis)) / m.unit
         same = (cosine > np.cos(np.radians(2.0))) & ((apart < 0.02) | (h.kinds == SLIDE))
         numbers = (
-            line.score,
-            line.surface,
-            line.circles,
-            min(line.surface_a, line.surface_b),
-            min(line.circles_a, line.circles_b),
+            same * line.score,
+            same * line.surface,
+            same * line.circles,
+            same * min(line.surfaces),
+            same * min(line.rings),
+            line.score * (cosine > 0.999),
         )
-        for name, number in zip(names, numbers, strict=True):
-            values[f"bearing_{name}"] = np.maximum(values[f"bearing_{name}"], same * number)
-        values["bearing_axis"] = np.maximum(values["bearing_axis"], line.score * (cosine > 0.999))
-        best = max(best, line.score)
-    rail = scene.bearing.rail if scene.bearing is not None else None
-    along = np.abs(h.axes @ rail.axis) > 0.999 if rail is not None else np.zeros(count, dtype=bool)
-    score = rail.score if rail is not None else 0.0
+        for name, number in zip(values, numbers, strict=True):
+            values[name] = np.maximum(values[name], number)
+    rail = scene.rail
     return {
         **values,
-        "bearing_best": np.full(count, best),
-        "rail_best": np.full(count, score),
-        "rail_along": along * float(score),
-        "rail_lead": np.full(count, scene.rail_lead),
-        "journal": np.full(count, 0.0 if scene.journal is None else scene.journal.coverage),
+        "bearing_best": max((line.score for line in found), default=0.0),
+        "rail_best": 0.0 if rail is None else rail.score,
+        "rail_along": 0.0 if rail is None else np.where(np.abs(h.axes @ rail.axis) > 0.999, rail.score, 0.0),
+        "rail_lead": scene.rail_lead,
+        "journal": 0.0 if scene.journal is None else scene.journal.coverage,
     }
 
 
-def place(m: MeasuredHypotheses) -> Values:
+def place(m: MeasuredHypotheses) -> _Found:
     """The line in the boxes of child and parent: along which side, how far from the middle, near what."""
     h, scene = m.hypotheses, m.scene
     frame = scene.frame
@@ -300,54 +301,55 @@ def place(m: MeasuredHypotheses) -> Values:
     offset = -(m.arms @ frame.axes[order].T) / half
     across = 1.0 - along > 0.5
     offset = np.where(across, offset, 0.0)
-    result = {f"along_{name}": along[:, k] for k, name in enumerate(("short", "middle", "long"))}
-    result |= {f"off_{name}": np.abs(offset[:, k]) for k, name in enumerate(("short", "middle", "long"))}
-    result["off_most"] = np.abs(offset).max(axis=1)
-    result["off_least"] = np.where(across, np.abs(offset), 9.0).min(axis=1)
     points = m.child.points[:: max(1, len(m.child.points) // 300)]
     radius = m.radii(points)
     reach = np.maximum(radius.max(axis=1), _TINY)
-    result["mean_radius"] = radius.mean(axis=1) / reach
-    result["least_radius"] = radius.min(axis=1) / reach
-    result["eccentric"] = lengths_of(np.cross(points.mean(axis=0) - h.pivots, h.axes)) / reach
-    result["reach"] = reach / m.unit
-    result["length"] = (np.abs(h.axes @ frame.axes.T) @ frame.extents) / m.unit
+    length = (np.abs(h.axes @ frame.axes.T) @ frame.extents) / m.unit
     body = scene.body_box
     size = np.maximum(body[1] - body[0], 0.01 * m.unit)
     foot = scene.centre - m.arms
     in_body = (foot @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
     in_body = np.where(np.abs(h.axes @ frame.axes.T) < 0.7, np.abs(in_body), 0.0)
-    result["body_off_most"] = in_body.max(axis=1)
-    result["body_off_sum"] = in_body.sum(axis=1)
     centre = (scene.centre @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
     outer = -m.arms @ frame.axes.T
     outer = np.where(np.abs(outer) < _LEVEL * m.unit, 0.0, outer)  # a line through the centre is on neither side
     side = np.argmax(np.abs(outer), axis=1)
     rows = np.arange(len(h))
-    result["hinge_outward"] = np.sign(outer[rows, side]) * centre[side]
     low, high = frame.slab_lower - body[0], body[1] - frame.slab_upper
     towards = outer[rows, side] > 0
     near, far = np.where(towards, high[side], low[side]), np.where(towards, low[side], high[side])
-    result["margin_here"] = near / m.unit
-    result["margin_opposite"] = far / m.unit
     steps = np.linspace(-0.9, 0.9, 7)
-    span = 0.5 * result["length"] * m.unit
+    span = 0.5 * length * m.unit
     probes = foot[:, None] + steps[None, :, None] * (span[:, None] * h.axes)[:, None]
     to_parent = scene.cache.distances(scene.parent, probes.reshape(-1, 3)).reshape(len(h), -1) / m.unit
     to_child = scene.cache.distances(scene.child, probes.reshape(-1, 3)).reshape(len(h), -1) / m.unit
-    result["line_to_parent"] = to_parent.mean(axis=1)
-    result["line_to_parent_least"] = to_parent.min(axis=1)
-    result["line_to_child"] = to_child.mean(axis=1)
-    return result
+    sides = ("short", "middle", "long")
+    return {
+        **{f"along_{name}": along[:, k] for k, name in enumerate(sides)},
+        **{f"off_{name}": np.abs(offset[:, k]) for k, name in enumerate(sides)},
+        "off_most": np.abs(offset).max(axis=1),
+        "off_least": np.where(across, np.abs(offset), 9.0).min(axis=1),
+        "mean_radius": radius.mean(axis=1) / reach,
+        "least_radius": radius.min(axis=1) / reach,
+        "eccentric": lengths_of(np.cross(points.mean(axis=0) - h.pivots, h.axes)) / reach,
+        "reach": reach / m.unit,
+        "length": length,
+        "body_off_most": in_body.max(axis=1),
+        "body_off_sum": in_body.sum(axis=1),
+        "hinge_outward": np.sign(outer[rows, side]) * centre[side],
+        "margin_here": near / m.unit,
+        "margin_opposite": far / m.unit,
+        "line_to_parent": to_parent.mean(axis=1),
+        "line_to_parent_least": to_parent.min(axis=1),
+        "line_to_child": to_child.mean(axis=1),
+    }
 
 
-def contact_place(m: MeasuredHypotheses) -> Values:
+def contact_place(m: MeasuredHypotheses) -> _Found:
     """Where the contact lies about the line."""
     h, contact = m.hypotheses, m.scene.contact
-    count = len(h)
-    names = ("radius", "radius_least", "radius_most", "share_near", "spread_along", "offset", "along_contact")
     if len(contact.points) == 0:
-        return {f"contact_{name}": np.full(count, np.nan) for name in names}
+        return {}
     points = contact.points[m.few_contact]
     radius = m.radii(points) / m.unit
     along = (points - contact.centroid) @ h.axes.T
@@ -360,25 +362,26 @@ def contact_place(m: MeasuredHypotheses) -> Values:
         "contact_radius_most": reach,
         "contact_share_near": (radius < 0.06).mean(axis=1),
         "contact_spread_along": np.ptp(along, axis=0) / m.unit,
-        "contact_offset": lengths_of(np.cross(contact.centroid - h.pivots, h.axes)) / m.unit,
+        "contact_offset": lengths_of(crossed(contact.centroid - h.pivots, h.axes)) / m.unit,
         "contact_along": np.abs(h.axes @ vectors[:, 2]),
         "contact_across": np.abs(h.axes @ vectors[:, 0]),
-        "contact_flatness": np.full(count, np.sqrt(max(values[0], 0.0) / values[2])),
-        "contact_slimness": np.full(count, np.sqrt(max(values[1], 0.0) / values[2])),
-        "contact_spread": np.full(count, np.sqrt(values.sum()) / m.unit),
+        "contact_flatness": np.sqrt(max(values[0], 0.0) / values[2]),
+        "contact_slimness": np.sqrt(max(values[1], 0.0) / values[2]),
+        "contact_spread": np.sqrt(values.sum()) / m.unit,
         "contact_normals_along": np.abs(normals @ h.axes.T).mean(axis=0),
     }
 
 
-def child_shape(m: MeasuredHypotheses) -> Values:
+def child_shape(m: MeasuredHypotheses) -> _Found:
     """Sides of the child, how boxy and how round it is, and its size beside parent and whole."""
-    scene, count = m.scene, len(m.hypotheses)
+    scene = m.scene
     sides = np.sort(scene.frame.extents)
     sides = np.maximum(sides, 1e-4 * sides[2])
     facing = np.abs(m.child.normals @ scene.frame.axes.T) > np.cos(np.radians(12.0))
     parent_sides = np.sort(scene.parent_frame.extents)
     shares = np.sort(facing.mean(axis=0))
-    facts = {
+    edge = scene.cache.graph.by_pair.get(pair(scene.parent, scene.child))
+    return {
         "thin": np.log(sides[0] / sides[1]),
         "slim": np.log(sides[1] / sides[2]),
         "boxy": facing.any(axis=1).mean(),
@@ -392,58 +395,47 @@ def child_shape(m: MeasuredHypotheses) -> Values:
         "parent_slim": np.log(max(float(parent_sides[1] / max(parent_sides[2], _TINY)), 1e-4)),
         "sticking_out": scene.frame.diagonal / max(float(np.linalg.norm(scene.frame.extents)), _TINY),
         "contact_share_of_child": len(scene.contact.points) / max(len(m.child.points), 1),
-        "gap": _gap(scene) / m.unit,
+        "gap": (scene.diagonal if edge is None else edge.gap) / m.unit,
     }
-    return {name: np.full(count, float(value)) for name, value in facts.items()}
 
 
-def _gap(scene: JointScene) -> float:
-    edge = scene.cache.graph.by_pair.get((min(scene.parent, scene.child), max(scene.parent, scene.child)))
-    return scene.diagonal if edge is None else edge.gap
-
-
-def where(m: MeasuredHypotheses) -> Values:
+def where(m: MeasuredHypotheses) -> _Found:
     """The child in its parent and in the whole: inside, in front, on top, covered, overlapping, facing up."""
     scene, h = m.scene, m.hypotheses
-    count = len(h)
     frame, body = scene.frame, scene.body_box
     size = np.maximum(body[1] - body[0], 1e-3 * m.unit)
     centre = (scene.centre @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
     along = np.abs(h.axes @ frame.axes.T)
-    thin = frame.thin
     low, high = scene.cache.assembly.bounds
     whole = (scene.centre - low) / np.maximum(high - low, _TINY)
     at_rest = scene.cache.inside(scene.parent, m.child.points[m.few] - 0.01 * m.unit * m.child.normals[m.few])
-    reaching = np.abs(scene.cache.assembly.parts[scene.child].bounds - scene.cache.assembly.parts[scene.parent].bounds)
-    facts = {
+    own, its = (scene.cache.assembly.parts[part].bounds for part in (scene.child, scene.parent))
+    ahead = np.minimum(np.abs(frame.lower - body[0]), np.abs(body[1] - frame.upper)) / m.unit
+    filling = frame.extents / size
+    return {
         "inside_box": scene.inside,
         "inside_solid": at_rest.mean(),
         "enclosed": scene.enclosed,
-        "thin_up": abs(float(frame.axes[thin] @ UP)),
+        "thin_up": abs(float(frame.axes[frame.thin] @ UP)),
         "long_up": abs(float(frame.axes[int(np.argmax(frame.extents))] @ UP)),
-        "centre_thin": abs(float(centre[thin])),
-        "centre_most": float(np.abs(centre).max()),
-        "centre_up": float((scene.centre - scene.cache.assembly.parts[scene.parent].bounds.mean(axis=0)) @ UP)
-        / max(float(np.ptp(scene.cache.assembly.parts[scene.parent].bounds[:, 2])), 1e-3 * m.unit),
-        "height": float(whole[2]),
-        "to_floor": float(scene.cache.assembly.parts[scene.child].bounds[0, 2] - low[2]) / m.unit,
-        "flush_count": float((reaching < 0.02 * m.unit).sum()),
-        "filling": float(np.prod(np.minimum(frame.extents / size, 1.0))),
-        "filling_most": float(np.sort(frame.extents / size)[2]),
-        "filling_middle": float(np.sort(frame.extents / size)[1]),
-        "handle": float(scene.handle is not None),
+        "centre_thin": abs(float(centre[frame.thin])),
+        "centre_most": np.abs(centre).max(),
+        "centre_up": (scene.centre - its.mean(axis=0)) @ UP / max(float(np.ptp(its[:, 2])), 1e-3 * m.unit),
+        "height": whole[2],
+        "to_floor": (own[0, 2] - low[2]) / m.unit,
+        "flush_count": (np.abs(own - its) < 0.02 * m.unit).sum(),
+        "filling": np.prod(np.minimum(filling, 1.0)),
+        "filling_most": filling.max(),
+        "filling_middle": np.sort(filling)[1],
+        "handle": scene.handle is not None,
+        "axis_up": np.abs(h.axes @ UP),
+        "centre_along": along @ np.abs(centre),
+        "filling_along": along @ filling,
+        "flush_along": along @ ahead,
     }
-    result = {name: np.full(count, float(value)) for name, value in facts.items()}
-    result["axis_up"] = np.abs(h.axes @ UP)
-    result["centre_along"] = along @ np.abs(centre)
-    result["filling_along"] = along @ (frame.extents / size)
-    own_low, own_high = frame.lower, frame.upper
-    ahead = np.minimum(np.abs(own_low - body[0]), np.abs(body[1] - own_high)) / m.unit
-    result["flush_along"] = along @ ahead
-    return result
 
 
-def symmetry(m: MeasuredHypotheses) -> Values:
+def symmetry(m: MeasuredHypotheses) -> _Found:
     """Measure what the motion carries the child onto: itself all around, by a fold of the circle, or along a line.
 
     Distances of moved points to the surface at rest, in shares of the reach; 0 for a disc about its axle, small after a
@@ -476,7 +468,7 @@ def symmetry(m: MeasuredHypotheses) -> Values:
     }
 
 
-def _outline(m: MeasuredHypotheses, points: FloatArray) -> Values:
+def _outline(m: MeasuredHypotheses, points: FloatArray) -> _Found:
     """Measure how round the outline about each line is: least over largest radius of twelve sectors, their spread."""
     h = m.hypotheses
     sector, apart = _sectors(m, points)
@@ -495,18 +487,10 @@ def _sectors(m: MeasuredHypotheses, points: FloatArray) -> tuple[IntArray, Float
 
     No sector starts where outlines of boxes and prisms have their corners.
     """
-    first, second = _across_pair(m.hypotheses.axes)
+    first, second = across_axes(m.hypotheses.axes)
     offset = points[None] - m.hypotheses.pivots[:, None]
     x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
     return ((np.arctan2(y, x) + _FIRST_SECTOR) / (2.0 * np.pi) * 12).astype(np.int64) % 12, np.hypot(x, y)
-
-
-def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two unit directions across each axis and each other, shape (h, 3) each."""
-    helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
-    first = np.cross(axes, helper)
-    first /= np.maximum(lengths_of(first), _TINY)[:, None]
-    return first, np.cross(axes, first)
 
 
 def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> FloatArray:
@@ -520,7 +504,7 @@ def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> Fl
     return np.where(h.kinds == TURN, wound, np.nan)
 
 
-def axle(m: MeasuredHypotheses) -> Values:
+def axle(m: MeasuredHypotheses) -> _Found:
     """Test whether the line is an axle: how high above the floor beside its reach, what it meets on either side."""
     h, scene = m.hypotheses, m.scene
     radius = np.maximum(m.radii(m.child.points[m.few]).max(axis=1), 0.02 * m.unit)
@@ -542,17 +526,13 @@ def axle(m: MeasuredHypotheses) -> Values:
     }
 
 
-def standing_in(m: MeasuredHypotheses) -> Values:
+def standing_in(m: MeasuredHypotheses) -> _Found:
     """Where the solids stand in each other at rest: how far from the line, and how far along it."""
     scene, h = m.scene, m.hypotheses
     points = np.concatenate(m.shared)
-    result = {
-        "shared_child": np.full(len(h), len(m.shared[0]) / _TRIED),
-        "shared_parent": np.full(len(h), len(m.shared[1]) / _TRIED),
-    }
+    result: _Found = {"shared_child": len(m.shared[0]) / _TRIED, "shared_parent": len(m.shared[1]) / _TRIED}
     if len(points) < _LEAST_SHARED:
-        missing = np.full(len(h), np.nan)
-        return result | {f"shared_{name}": missing for name in ("radius", "radius_most", "along", "offset", "at_end")}
+        return result
     radius = m.radii(points) / m.unit
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     half = 0.5 * (np.abs(h.axes @ scene.frame.axes.T) @ scene.frame.extents)
@@ -565,7 +545,7 @@ def standing_in(m: MeasuredHypotheses) -> Values:
     }
 
 
-def mirror(m: MeasuredHypotheses) -> Values:
+def mirror(m: MeasuredHypotheses) -> _Found:
     """Test whether a joint is as symmetric as what it moves: a drawer and its handle do not say on which side to hinge.
 
     Planes through the child's centre along its box. Where the child, its contact and the parent around it are alike on
@@ -590,13 +570,13 @@ def mirror(m: MeasuredHypotheses) -> Values:
     turned = 2.0 * np.abs(cosines) * np.sqrt(np.maximum(1.0 - cosines**2, 0.0))
     across = np.minimum(2.0 * np.abs(m.arms @ axes.T) / m.unit, 1.0) * np.sqrt(np.maximum(1.0 - cosines**2, 0.0))
     broken = np.where((h.kinds == TURN)[:, None], np.maximum(turned, across), turned)
-    pair = alike.min(axis=0)
+    both = alike.min(axis=0)
     return {
         "mirror_child": (broken * alike[0]).max(axis=1),
-        "mirror_pair": (broken * pair).max(axis=1),
+        "mirror_pair": (broken * both).max(axis=1),
         "mirror_contact": (broken * np.minimum(alike[0], alike[1])).max(axis=1),
-        "mirror_planes": np.full(len(h), float(alike[0].sum())),
-        "mirror_pair_planes": np.full(len(h), float(pair.sum())),
+        "mirror_planes": alike[0].sum(),
+        "mirror_pair_planes": both.sum(),
         # What is not alike on both sides should have to do with the joint.
         "mirror_reason": (broken * (1.0 - alike[0])).max(axis=1),
     }
@@ -612,7 +592,7 @@ def _mirrored_gap(m: MeasuredHypotheses, part: int, points: FloatArray, normal: 
     return float(np.abs(m.scene.cache.distances(part, images) - before).mean() / m.unit)
 
 
-def hollow(m: MeasuredHypotheses) -> Values:
+def hollow(m: MeasuredHypotheses) -> _Found:
     """Return what of the child is around its own centre: a drawer is open above, a cap below, a ring along its line."""
     h, scene = m.hypotheses, m.scene
     reach = 2.0 * m.unit
@@ -621,7 +601,7 @@ def hollow(m: MeasuredHypotheses) -> Values:
         starts = np.broadcast_to(scene.centre, directions.shape)
         return np.isfinite(scene.cache.first_hits(scene.child, starts, reach * directions)).astype(np.float64)
 
-    first, second = _across_pair(h.axes)
+    first, second = across_axes(h.axes)
     forward = np.where(m.better == 0, 1.0, -1.0)[:, None] * h.axes
     moves = (h.kinds != FIXED)[:, None]
     around = [met(np.where(moves, sign * axis, UP)) for axis in (first, second) for sign in (1.0, -1.0)]
@@ -629,12 +609,12 @@ def hollow(m: MeasuredHypotheses) -> Values:
         "own_ahead": met(np.where(moves, forward, UP)),
         "own_behind": met(np.where(moves, -forward, UP)),
         "own_around": np.mean(around, axis=0),
-        "own_above": np.full(len(h), met(UP[None])[0]),
-        "own_below": np.full(len(h), met(-UP[None])[0]),
+        "own_above": met(UP[None])[0],
+        "own_below": met(-UP[None])[0],
     }
 
 
-def around(m: MeasuredHypotheses) -> Values:
+def around(m: MeasuredHypotheses) -> _Found:
     """Measure how far around the line the contact and the child in it reach: an axle is held on all sides."""
     return {
         "contact_around": _around(m, m.scene.contact.points[m.few_contact]),
@@ -652,7 +632,7 @@ def _around(m: MeasuredHypotheses, points: FloatArray) -> FloatArray:
     return np.where(h.kinds == TURN, met.mean(axis=1), np.nan)
 
 
-def gravity(m: MeasuredHypotheses) -> Values:
+def gravity(m: MeasuredHypotheses) -> _Found:
     """Where the line lies above or below the child, and whether the free motion lifts it."""
     arms = -m.arms
     length = np.maximum(lengths_of(arms), 1e-9 * m.unit)
@@ -674,12 +654,11 @@ def gravity(m: MeasuredHypotheses) -> Values:
     }
 
 
-def handle(m: MeasuredHypotheses) -> Values:
+def handle(m: MeasuredHypotheses) -> _Found:
     """Where a hand pulls: far from the line, and along what it moves."""
     h, held = m.hypotheses, m.scene.handle
     if held is None:
-        missing = np.full(len(h), np.nan)
-        return {"handle_far": missing, "handle_parallel": missing, "handle_pull": missing, "handle_off": missing}
+        return {}
     arm = lengths_of(m._across(held.centre)) / m.unit
     velocity = m.velocity(held.centre[None])[:, 0]
     pull = np.abs(velocity @ m.scene.frame.axes[m.scene.frame.thin]) / np.maximum(lengths_of(velocity), 1e-9 * m.unit)
@@ -691,14 +670,14 @@ def handle(m: MeasuredHypotheses) -> Values:
         "handle_far": arm,
         "handle_parallel": np.abs(h.axes @ held.direction),
         "handle_pull": pull,
-        "handle_off": np.full(len(h), float(np.delete(off, frame.thin).max())),
+        "handle_off": np.delete(off, frame.thin).max(),
         "handle_opposite": np.einsum("hk,k->h", m.arms, towards) / length,
     }
 
 
-def opening(m: MeasuredHypotheses) -> Values:
+def opening(m: MeasuredHypotheses) -> _Found:
     """Return what the motion is for: how much more of the child, and of what it covers, can be seen from outside."""
-    scene, h = m.scene, m.hypotheses
+    scene = m.scene
     rng = np.random.default_rng(11)
     reach = 2.0 * scene.diagonal
     amounts = np.where(m.better == 0, 1.0, -1.0) * m.amounts()[:, _OPEN]
@@ -707,26 +686,19 @@ def opening(m: MeasuredHypotheses) -> Values:
     blocked = _blocked(m, (scene.parent, *m._near_others()), *turned, reach)
     before = _blocked(m, (scene.parent, *m._near_others()), starts[None], (starts + rays)[None], reach)
     seen_before = 1.0 - float(before.mean())
-    result = {
-        "seen": np.full(len(h), seen_before),
-        "seen_more": (1.0 - blocked.mean(axis=1)) - seen_before,
-    }
+    result: _Found = {"seen": seen_before, "seen_more": (1.0 - blocked.mean(axis=1)) - seen_before}
+    nothing: _Found = {"covers": 0.0, "uncovers": 0.0}
     covered = m.few_parent
     if len(covered) == 0:
-        return {**result, "covers": np.zeros(len(h)), "uncovers": np.zeros(len(h))}
+        return result | nothing
     starts, rays = _outward_rays(m.parent.points[covered], m.parent.normals[covered], 0.01 * m.unit, rng)
     free = ~_blocked(m, (scene.parent, *m._near_others()), starts[None], (starts + rays)[None], reach)[0]
     starts, rays = starts[free], rays[free]
     if len(starts) == 0:
-        return {**result, "covers": np.zeros(len(h)), "uncovers": np.zeros(len(h))}
+        return result | nothing
     rest = float(_blocked(m, (scene.child,), starts[None], (starts + rays)[None], reach).mean())
     then = _blocked(m, (scene.child,), m.moved(starts, -amounts), m.moved(starts + rays, -amounts), reach)
-    return {
-        **result,
-        "covers": np.full(len(h), rest),
-        "uncovers": rest - then.mean(axis=1),
-        "open_share": np.full(len(h), float(free.mean())),
-    }
+    return result | {"covers": rest, "uncovers": rest - then.mean(axis=1), "open_share": free.mean()}
 
 
 def _outward_rays(
@@ -734,9 +706,9 @@ def _outward_rays(
 ) -> tuple[FloatArray, FloatArray]:
     """Four rays from each point into the half space that its normal shows, starts and unit directions, (4 n, 3)."""
     directions = rng.normal(size=(4, *points.shape))
-    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
     directions = directions + 1.05 * normals
-    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
     starts = np.broadcast_to(points + lift * normals, directions.shape)
     return starts.reshape(-1, 3), directions.reshape(-1, 3)
 
@@ -755,50 +727,46 @@ def _blocked(
     return result
 
 
-def neighbours(m: MeasuredHypotheses) -> Values:
+def neighbours(m: MeasuredHypotheses) -> _Found:
     """Congruent parts, in which direction they stand, and what else the child touches or carries."""
     scene, h = m.scene, m.hypotheses
-    graph, count = scene.cache.graph, len(h)
-    label = graph.cluster_of[scene.child]
-    twins = [part for part in graph.clusters[label] if part != scene.child] if label >= 0 else []
-    touched = [edge for edge in graph.edges if scene.child in (edge.a, edge.b) and not edge.bridge]
-    result = {
-        "twins": np.full(count, float(len(twins))),
-        "touches": np.full(count, float(len(touched))),
-        "parts": np.full(count, np.log(len(scene.cache.assembly.parts))),
-        "parent_moves": np.full(count, float(scene.parent_moves)),
-        "serial": np.full(count, float(scene.serial)),
-        "carries": np.full(count, float(len(scene.cache.assembly.parts) - len(scene.others) - 2)),
+    graph, parts = scene.cache.graph, len(scene.cache.assembly.parts)
+    twins = graph.alike.others(scene.child)
+    result: _Found = {
+        "twins": len(twins),
+        "touches": sum(scene.child in (edge.a, edge.b) and not edge.bridge for edge in graph.edges),
+        "parts": np.log(parts),
+        "parent_moves": scene.parent_moves,
+        "serial": scene.serial,
+        "carries": parts - len(scene.others) - 2,
     }
     if not twins:
-        missing = np.full(count, np.nan)
-        return result | {"twin_along": missing, "twin_near": missing, "twin_thin": missing, "twin_coaxial": missing}
+        return result
     centres = np.array([scene.cache.samples(part).points.mean(axis=0) for part in twins])
     offset = centres - m.child.points.mean(axis=0)
     nearest = offset[int(np.argmin(lengths_of(offset)))]
     direction = nearest / max(float(np.linalg.norm(nearest)), _TINY)
-    apart = lengths_of(np.cross(offset[None] + m.arms[:, None], h.axes[:, None]))
+    apart = lengths_of(crossed(offset[None] + m.arms[:, None], h.axes[:, None]))
     return result | {
         "twin_coaxial": apart.min(axis=1) / m.unit,
         "twin_along": np.abs(h.axes @ direction),
-        "twin_near": np.full(count, float(np.linalg.norm(nearest)) / m.unit),
-        "twin_thin": np.full(count, abs(float(direction @ scene.frame.axes[scene.frame.thin]))),
+        "twin_near": float(np.linalg.norm(nearest)) / m.unit,
+        "twin_thin": abs(float(direction @ scene.frame.axes[scene.frame.thin])),
         "twin_towards": -np.einsum("hk,k->h", m.arms, direction) / m.unit,
     }
 
 
-def measure(scene: JointScene, hypotheses: Hypotheses) -> Values:
+def measure(m: MeasuredHypotheses) -> Values:
     """Everything that is measured of the hypotheses of an edge, (h,) each; NaN or absent where it does not apply."""
-    return {name: value for values in measure_groups(scene, hypotheses).values() for name, value in values.items()}
+    return {name: value for values in measure_groups(m).values() for name, value in values.items()}
 
 
-def measure_groups(scene: JointScene, hypotheses: Hypotheses) -> dict[str, Values]:
+def measure_groups(m: MeasuredHypotheses) -> dict[str, Values]:
     """The same by the group that measures it."""
-    measured = MeasuredHypotheses(scene, hypotheses)
-    return {name: group(measured) for name, group in GROUPS.items()}
+    return {name: {key: m.of_each(value) for key, value in group(m).items()} for name, group in GROUPS.items()}
 
 
-_MEASURING: tuple[Callable[[MeasuredHypotheses], Values], ...] = (
+_MEASURING: tuple[Callable[[MeasuredHypotheses], _Found], ...] = (
     motion, contact_motion, sliding_surface, bearing, place, contact_place, child_shape, where, symmetry, axle,
     standing_in, mirror, hollow, around, gravity, handle, opening, neighbours,
 )  # fmt: skip

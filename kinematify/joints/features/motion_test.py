@@ -168,7 +168,7 @@ class Clearance:
 
 
 def contact_clearance(
-    scene: JointScene, axes: FloatArray, pivots: FloatArray, direction: FloatArray, config: JointsConfig
+    scene: JointScene, axes: FloatArray, pivots: FloatArray, direction: FloatArray
 ) -> Clearance | None:
     """Measure how far a contact turns about the freest of several lines and slides, against the parent alone.
 
@@ -177,48 +177,47 @@ def contact_clearance(
         axes: Unit directions of the lines, shape (c, 3).
         pivots: Points on them [m], shape (c, 3).
         direction: Unit direction of the slide, shape (3,).
-        config: `clearance` and the step of sweeps.
 
     Returns:
         The clearance; None where the contact has too few samples.
     """
-    points = _followed(scene, config)
+    points = _followed(scene)
     if points is None:
         return None
-    limit = np.radians(config.clearance.turn_deg)
-    turned = turn_paths(scene.cache, points, axes, pivots, limit=limit, config=_strict(config))
-    free = turned.against((scene.parent,)).free(_share(scene, config)).max(axis=1)
-    radii = np.linalg.norm(np.cross(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
+    limit = np.radians(scene.config.clearance.turn_deg)
+    turned = turn_paths(scene.cache, points, axes, pivots, limit=limit, config=_strict(scene.config))
+    free = turned.against((scene.parent,)).free(_share(scene)).max(axis=1)
+    radii = np.linalg.norm(crossed(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
     arcs = np.where(free >= limit, np.inf, free * radii)
-    return Clearance(turn=float(arcs.max()), slide=float(_slid(scene, points, direction, config).max()))
+    return Clearance(turn=float(arcs.max()), slide=float(_slid(scene, points, direction).max()))
 
 
-def slide_clearance(scene: JointScene, direction: FloatArray, config: JointsConfig) -> FloatArray | None:
+def slide_clearance(scene: JointScene, direction: FloatArray) -> FloatArray | None:
     """Measure how far the contact slides along +/- a direction [m], shape (2,), inf if never stopped; None as above."""
-    points = _followed(scene, config)
-    return None if points is None else _slid(scene, points, direction, config)
+    points = _followed(scene)
+    return None if points is None else _slid(scene, points, direction)
 
 
-def _slid(scene: JointScene, points: FloatArray, direction: FloatArray, config: JointsConfig) -> FloatArray:
-    reach = config.clearance.slide * scene.frame.diagonal
-    slid = slide_paths(scene.cache, points, direction[None], limit=reach, config=_strict(config))
-    free = slid.against((scene.parent,)).free(_share(scene, config))[0]
+def _slid(scene: JointScene, points: FloatArray, direction: FloatArray) -> FloatArray:
+    reach = scene.config.clearance.slide * scene.frame.diagonal
+    slid = slide_paths(scene.cache, points, direction[None], limit=reach, config=_strict(scene.config))
+    free = slid.against((scene.parent,)).free(_share(scene))[0]
     return np.where(free >= reach, np.inf, free)
 
 
-def _followed(scene: JointScene, config: JointsConfig) -> FloatArray | None:
+def _followed(scene: JointScene) -> FloatArray | None:
     """Samples of the contact, drawn into the child [m], shape (n, 3); None where there are too few."""
     contact = scene.contact
-    if len(contact.points) < config.clearance.least_samples:
+    if len(contact.points) < scene.config.clearance.least_samples:
         return None
-    stride = max(1, len(contact.points) // config.clearance.samples)
-    return np.asarray((contact.points - config.clearance.inset * scene.frame.diagonal * contact.normals)[::stride])
+    stride = max(1, len(contact.points) // scene.config.clearance.samples)
+    return (contact.points - scene.config.clearance.inset * scene.frame.diagonal * contact.normals)[::stride]
 
 
 def _strict(config: JointsConfig) -> SweepConfig:
     return config.sweep.model_copy(update={"grace": 0.0, "hinge_zone": 0.0})
 
 
-def _share(scene: JointScene, config: JointsConfig) -> float:
+def _share(scene: JointScene) -> float:
     """A journal is modelled with its clearance, so that fewer samples are beyond doubt."""
-    return config.clearance.share if scene.journal is None else config.clearance.journal_share
+    return scene.config.clearance.share if scene.journal is None else scene.config.clearance.journal_share

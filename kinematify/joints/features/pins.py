@@ -6,20 +6,18 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
 from kinematify.contact.graph import pair
-from kinematify.geometry.part_stats import assembly_stats
-from kinematify.joints.features.journal import facing_faces, find_journal
+from kinematify.joints.features.journal import held_journal
 from kinematify.joints.features.workspace import PartCache
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config, JointsConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
 
 
@@ -37,24 +35,29 @@ class EdgePins:
 
 
 def find_pins(
-    assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
+    assembly: Assembly,
+    graph: ContactGraph,
+    stats: Sequence[PartStats],
+    bearings: Mapping[Pair, EdgeBearing],
+    config: Config,
 ) -> EdgePins:
     """Ask the edges that others could replace and that have no clear bearing or join congruent parts, and coaxial ones.
 
     Args:
         assembly: The parts.
         graph: Their contacts.
+        stats: What is measured of the parts.
         bearings: Bearing lines of the edges, best first.
         config: `topology` says what is clear and what is one line, `joints` how contacts are asked.
     """
     lines = {edge: bearing.lines[0] for edge, bearing in bearings.items() if bearing.lines}
-    topology, label = config.topology, graph.cluster_of
+    topology, kind = config.topology, graph.alike.kind
     doubtful = [
         (a, b)
         for a, b in on_cycles(graph.by_pair, graph.n_parts)
-        if (a, b) in lines and (lines[a, b].score < topology.clear_score or label[a] == label[b] >= 0)
+        if (a, b) in lines and (lines[a, b].score < topology.clear_score or kind[a] == kind[b])
     ]
-    hulls = [item.hull_volume for item in assembly_stats(assembly)]
+    hulls = [item.hull_volume for item in stats]
     found = coaxial_carriers(lines, angle=topology.stack_deg, distance=topology.stack_distance * assembly.diagonal)
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
     return EdgePins(
@@ -69,14 +72,12 @@ def find_pins(
 def on_cycles(edges: Iterable[Pair], n: int) -> list[Pair]:
     """Edges that others could replace: without one of them, all parts that it joins are still connected."""
     kept = list(edges)
-    replaceable = []
-    for edge in kept:
-        rows, columns = np.array([other for other in kept if other != edge]).reshape(-1, 2).T
-        matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
-        labels = connected_components(matrix, directed=False)[1]
-        if labels[edge[0]] == labels[edge[1]]:
-            replaceable.append(edge)
-    return replaceable
+    incidence = np.zeros((len(kept), n))
+    for row, ends in zip(incidence, kept, strict=True):
+        row[list(ends)] = 1.0, -1.0
+    # An edge of unit resistance that nothing bypasses has the resistance 1 between its ends.
+    resistance = np.einsum("ij,jk,ik->i", incidence, np.linalg.pinv(incidence.T @ incidence), incidence)
+    return [edge for edge, between in zip(kept, resistance, strict=True) if between < 1.0 - 1e-6]
 
 
 def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distance: float) -> dict[Pair, frozenset[int]]:
@@ -90,32 +91,27 @@ def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distanc
     Returns:
         For every edge (a, b) with such parts: all c that touch both a and b, where all three turn on one line.
     """
-    touching: dict[int, set[int]] = {}
-    for a, b in lines:
-        touching.setdefault(a, set()).add(b)
-        touching.setdefault(b, set()).add(a)
+    parts = {part for edge in lines for part in edge}
 
     def coaxial(first: BearingLine, second: BearingLine) -> bool:
         offset = np.linalg.norm(np.cross(second.pivot - first.pivot, first.axis))
         return bool(abs(float(first.axis @ second.axis)) > np.cos(np.radians(angle)) and offset < distance)
 
     found = {}
-    for (a, b), line in lines.items():
-        common = touching[a] & touching[b]
-        carriers = frozenset(c for c in common if all(coaxial(line, lines[pair(end, c)]) for end in (a, b)))
+    for edge, line in lines.items():
+        others = [(part, [lines.get(pair(end, part)) for end in edge]) for part in parts]
+        carriers = frozenset(part for part, some in others if all(item and coaxial(line, item) for item in some))
         if carriers:
-            found[a, b] = carriers
+            found[edge] = carriers
     return found
 
 
-def has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
+def has_journal(cache: PartCache, ends: Pair, config: JointsConfig) -> bool:
     """True if a pin, barrel or shaft of one part sits in the other; looking from the smaller one.
 
     Leaves that lie edge to edge, fingers and drawers touch as well as a hinge does, but nothing of one goes round the
     other.
     """
-    small, large = sorted(pair, key=lambda part: (cache.assembly.parts[part].diagonal, part))
-    reach = cache.graph.by_pair[pair].gap + config.contact_band * cache.diagonal
-    facing = facing_faces(cache, large, small, reach, config.journal)
+    small, large = sorted(ends, key=lambda part: (cache.assembly.parts[part].diagonal, part))
     size = float(np.ptp(cache.assembly.parts[small].bounds, axis=0).max())
-    return find_journal(facing, size, config.journal) is not None
+    return held_journal(cache, large, small, size, config) is not None

@@ -98,7 +98,7 @@ def outwardness(scene: JointScene, lines: Hypotheses) -> FloatArray:
         body = scene.body_box.mean(axis=0) @ scene.frame.axes
         away = scene.centre - body
         away = away / max(float(np.linalg.norm(away)), 1e-12)
-    return np.asarray(velocity @ away / np.maximum(speed, 1e-9 * scene.diagonal))
+    return velocity @ away / np.maximum(speed, 1e-9 * scene.diagonal)
 
 
 def _motion_cues(

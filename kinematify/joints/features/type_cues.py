@@ -100,7 +100,7 @@ def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsC
 def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
     """Return the motions that the contact stops: a key, skirt or groove turning, a bead, barrel or fork sliding."""
     few = _near_best(scene, turns, config)
-    clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0], config)
+    clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0])
     if clearance is None:
         return {"keyed": 0.0, "retained": 0.0}
     least = config.clearance.least * scene.frame.diagonal
@@ -211,8 +211,7 @@ def _bridges_a_seam(scene: JointScene) -> bool:
     Buttons sit in one part, or beside their like.
     """
     graph, child = scene.cache.graph, scene.child
-    cluster = graph.cluster_of[child]
     touched = [
         edge.b if edge.a == child else edge.a for edge in graph.edges if child in (edge.a, edge.b) and not edge.bridge
     ]
-    return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
+    return any(part in scene.others and part not in graph.alike.others(child) for part in touched)

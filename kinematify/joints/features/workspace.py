@@ -13,7 +13,7 @@ from embreex.rtcore_scene import EmbreeScene
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
 from kinematify.joints.features.frames import body_axes
-from kinematify.robot.vectors import all_three, lengths_of
+from kinematify.robot.vectors import all_three, crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,7 +49,7 @@ class ContactView:
         """Area-weighted centre of the contact in the world frame [m], shape (3,); NaN without contact."""
         if len(self.points) == 0:
             return np.full(3, np.nan)
-        return np.asarray(self.weights @ self.points)
+        return self.weights @ self.points
 
     @cached_property
     def spread(self) -> tuple[FloatArray, FloatArray]:
@@ -95,6 +95,11 @@ class PartCache:
     def diagonal(self) -> float:
         """Diagonal of the assembly [m]; the unit of most tolerances."""
         return self.assembly.diagonal
+
+    def corners(self, part: int) -> FloatArray:
+        """Vertices of the faces of a part, world frame [m], shape (n, 3)."""
+        mesh = self.assembly.parts[part]
+        return mesh.vertices[np.unique(mesh.faces)]
 
     def _sampled(self, part: int) -> SurfaceSamples:
         return sample_surface(self.assembly.parts[part], self._samples, self._seed)
@@ -154,8 +159,8 @@ class PartCache:
         tree = self._tree(part)
         distances, index, closest = tree.nearest(points)
         corners = tree.vertices[tree.faces[index]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+        normals = crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
         return distances, closest, normals
 
     def inside(self, part: int, points: FloatArray) -> BoolArray:
@@ -167,7 +172,7 @@ class PartCache:
             off = np.abs(self._solid(part).numbers(points[near], accuracy)) - 0.5
             result[near] = off > 0.0
             near = near[np.abs(off) < clear]
-        return np.asarray(result)
+        return result
 
     def inside_any(self, parts: Sequence[int], points: FloatArray) -> BoolArray:
         """Test whether points (n, 3) in the world frame lie inside the solid of one of some parts, shape (n,)."""

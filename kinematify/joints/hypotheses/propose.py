@@ -12,12 +12,11 @@ import numpy as np
 from kinematify.joints.bearings.line import Lines
 from kinematify.joints.candidate import CENTRE, CORNER, ELSEWHERE, FIXED, GIVEN, HALF_WAY, SLIDE, TURN, Hypotheses
 from kinematify.joints.features.frames import UP
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config import JointsConfig
     from kinematify.joints.bearings.line import Line
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray
@@ -31,57 +30,52 @@ Proposal = tuple["FloatArray", "FloatArray", int, str]
 """Axis, a point, place and source of a line."""
 
 
-def propose(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> Hypotheses:
+def propose(scene: JointScene, given: Sequence[Line] = ()) -> Hypotheses:
     """Fixed, then every turn, then every slide.
 
     Args:
         scene: The pair.
-        config: What counts as one line or direction.
         given: Lines from elsewhere that stand beside the proposals, as turns and as slides; their source is `GIVEN`.
     """
-    turns = [*_turns(scene, config), *((line.axis, line.point, ELSEWHERE, GIVEN) for line in given)]
-    slides = [*_slides(scene, config), *((line.axis, GIVEN) for line in given)]
+    turns = [*_turns(scene), *((line.axis, line.point, ELSEWHERE, GIVEN) for line in given)]
+    slides = [*_slides(scene), *((line.axis, GIVEN) for line in given)]
     axes = np.array([axis for axis, _, _, _ in turns])
     pivots = np.array([pivot for _, pivot, _, _ in turns])
     pivots = pivots + np.einsum("cd,cd->c", scene.anchor - pivots, axes)[:, None] * axes
-    beside = 1 + len(slides)
+    count = len(slides)
     return Hypotheses(
-        kinds=np.array([FIXED] + [TURN] * len(turns) + [SLIDE] * len(slides)),
+        kinds=np.array([FIXED] + [TURN] * len(turns) + [SLIDE] * count),
         axes=np.concatenate([np.zeros((1, 3)), axes, np.array([axis for axis, _ in slides])]),
-        pivots=np.concatenate([scene.anchor[None], pivots, np.tile(scene.anchor, (len(slides), 1))]),
-        places=np.array([ELSEWHERE, *(place for _, _, place, _ in turns), *[ELSEWHERE] * (beside - 1)]),
+        pivots=np.concatenate([scene.anchor[None], pivots, np.tile(scene.anchor, (count, 1))]),
+        places=np.array([ELSEWHERE, *(place for _, _, place, _ in turns), *[ELSEWHERE] * count]),
         sources=("fixed", *(source for _, _, _, source in turns), *(source for _, source in slides)),
     )
 
 
-def _turns(scene: JointScene, config: JointsConfig) -> list[Proposal]:
+def _turns(scene: JointScene) -> list[Proposal]:
     """Bearing lines, lines through the contact, nine lines per direction of the slab's box, lines through centres."""
     found: list[Proposal] = []
     if scene.bearing is not None:
-        found += [
-            (line.axis, line.pivot, ELSEWHERE, "bearing") for line in scene.bearing.lines[:1] if scene.has_bearing
-        ]
-        found += [
-            (line.axis, line.pivot, ELSEWHERE, "weak_bearing")
-            for line in scene.bearing.lines[int(scene.has_bearing) : config.panels.bearings]
-        ]
-    found += _contact_lines(scene, config)
+        for line in scene.bearing.lines[: scene.config.panels.bearings]:
+            beyond_doubt = scene.has_bearing and not found
+            found.append((line.axis, line.pivot, ELSEWHERE, "bearing" if beyond_doubt else "weak_bearing"))
+    found += _contact_lines(scene)
     if scene.fold is not None:
         found.append((scene.fold.axis, scene.fold.point, ELSEWHERE, "fold"))
     found += _box_lines(scene)
     return found + _distinct(scene, centre_lines(scene), found)
 
 
-def _slides(scene: JointScene, config: JointsConfig) -> list[tuple[FloatArray, str]]:
+def _slides(scene: JointScene) -> list[tuple[FloatArray, str]]:
     """Distinct directions: rail, bearing, the child's box, the parent's box."""
     found: list[tuple[FloatArray, str]] = []
-    if scene.bearing is not None and scene.bearing.rail is not None and scene.mechanism > 0:
-        found.append((scene.bearing.rail.axis, "rail"))
+    if scene.rail is not None and scene.mechanism > 0:
+        found.append((scene.rail.axis, "rail"))
     if scene.bearing is not None and scene.bearing.lines and scene.has_bearing:
         found.append((scene.bearing.lines[0].axis, "bearing"))
     found += [(axis, "box") for axis in scene.frame.axes]
     found += [(axis, "parent_box") for axis in scene.parent_frame.axes]
-    return [found[k] for k in distinct_axes([axis for axis, _ in found], config.slides.distinct_deg)]
+    return [found[k] for k in distinct_axes([axis for axis, _ in found], scene.config.slides.distinct_deg)]
 
 
 def distinct_axes(axes: Sequence[FloatArray], angle: float) -> list[int]:
@@ -99,7 +93,7 @@ def _distinct(
     axes, points = [line[0] for line in known], [line[1] for line in known]
     found = []
     for axis, point in lines:
-        apart = lengths_of(np.cross(np.array(points) - point, axis))
+        apart = lengths_of(crossed(np.array(points) - point, axis))
         same = (np.abs(np.array(axes) @ axis) > np.cos(np.radians(_SAME_DEG))) & (
             apart < _SAME_LINE * scene.frame.diagonal
         )
@@ -125,10 +119,10 @@ def _box_lines(scene: JointScene) -> list[Proposal]:
     return found
 
 
-def _contact_lines(scene: JointScene, config: JointsConfig) -> list[Proposal]:
+def _contact_lines(scene: JointScene) -> list[Proposal]:
     """The direction that most of a small contact faces, and the long direction of the contact."""
     contact = scene.contact
-    if len(contact.points) < config.panels.least_contact:
+    if len(contact.points) < scene.config.panels.least_contact:
         return []
     values, vectors = contact.spread
     found = []
@@ -164,9 +158,9 @@ def _within(scene: JointScene, part: int, other: int) -> FloatArray:
 def _centre_directions(scene: JointScene, held: FloatArray) -> list[FloatArray]:
     """Distinct axes of the whole object, the boxes of parent and child, and those across the way out of the parent."""
     away = scene.centre - held
-    found = [*scene.upright_axes, *scene.parent_frame.axes, *scene.frame.axes]
+    found = [*scene.cache.upright_axes, *scene.parent_frame.axes, *scene.frame.axes]
     for first, second in ((away, UP), (away, scene.frame.axes[scene.frame.thin])):
-        across = np.cross(first, second)
+        across = crossed(first, second)
         length = float(np.linalg.norm(across))
         if length > _LEAST_ACROSS * float(np.linalg.norm(first)) > 0.0:
             found.append(across / length)
