@@ -49,7 +49,7 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
         **_room_cues(scene, slides),
         **_shape_cues(scene, turns),
         **{
-            "row": scene.smallness * float(len(scene.twins) >= 2),
+            "row": scene.smallness * (len(scene.twins) >= 2),
             "gripper": float(scene.gripping),
         },
         **_clearance_cues(scene, turns, slides, config),
@@ -71,6 +71,7 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
         cues[boxed] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
         cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
+    cues["row"] *= 1.0 - cues["round_small"]  # knobs stand in rows as buttons do
     return cues
 
 
@@ -191,7 +192,7 @@ def _shape_cues(scene: JointScene, turns: Ranked) -> dict[str, float]:
         * (1.0 - box * scene.inside)
         * float(scene.panel and not tray and not (top and scene.disc > 0.5)),
         "tray": float(tray and scene.journal is None),
-        "bearing": large * float(scene.has_bearing and not top),
+        "bearing": large * (scene.has_bearing and not top),
         "mechanism": scene.mechanism * large,
         "button": scene.smallness * float(not scene.has_bearing) * (1.0 - scene.compact) * (1.0 - edge),
         "wheel": float(scene.rolls),
@@ -199,9 +200,9 @@ def _shape_cues(scene: JointScene, turns: Ranked) -> dict[str, float]:
         "pedal": float(scene.pedal_direction.any()),
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
-        "capped": large * float(is_cap(scene)),
-        "latch": scene.smallness * float(_bridges_a_seam(scene)),
-        "on_moving_part": float(scene.parent_moves) * scene.smallness,
+        "capped": large * is_cap(scene),
+        "latch": scene.smallness * _bridges_a_seam(scene),
+        "on_moving_part": scene.parent_moves * scene.smallness,
     }
 
 
