@@ -29,11 +29,13 @@ def test_what_one_moves_the_others_follow(kind, followers, leader):
     joints = build(kind).joints
     assert sum(joint.mimic is not None and joint.mimic.joint == leader for joint in joints) == followers
     made = build(kind)
-    way = next(joint.upper for joint in joints if joint.child == leader)
-    moved = made.moved({leader: min(way, 1.0)})
+    leads = next(joint for joint in joints if joint.child == leader)
+    moved = made.moved({leader: min(leads.upper, 1.0)})
     there = {part.name: part for part in made.parts}
     for joint in joints:
         if joint.mimic is not None and joint.mimic.joint == leader:
+            ends = [joint.mimic.multiplier * end for end in (leads.lower, leads.upper)]
+            assert joint.lower - 1e-9 <= min(ends) < max(ends) <= joint.upper + 1e-9, "it can go where it is taken"
             part = next(part for part in moved.parts if part.name == joint.child)
             assert abs(part.vertices - there[joint.child].vertices).max() > 1e-3
 

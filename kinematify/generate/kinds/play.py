@@ -379,7 +379,7 @@ def bass_drum(b: ObjectBuilder, radius: float) -> None:
     b.hinge("beater", "drum", X, (0, 0.285, 0.235), 0.15, -0.5)
     b.part("pedal", beam(0.06, 0.008, (0, 0.49, 0.025), (0, 0.33, 0.1)), look="steel")
     b.hinge("pedal", "drum", -X, (0, 0.49, 0.025), 0.1, -0.25)
-    b.follow("beater", "pedal", -1.5)
+    b.follow("beater", "pedal", -0.6)
 
 
 @kind(
