@@ -97,7 +97,7 @@ class RayScene:
         """
         rays = self._local_rays(origins, np.broadcast_to(along, origins.shape))
         # A ray that meets nothing has the last place, -1.
-        return np.append(self.face_normals @ along > 0.0, False)[self._tree.run(*rays)]
+        return np.asarray(np.append(self.face_normals @ along > 0.0, False)[self._tree.run(*rays)])
 
     def occluded(self, origins: FloatArray, directions: NDArray[np.floating], reach: float) -> BoolArray:
         """Tell which rays meet any surface within `reach` [m]; a surface on which a ray starts does not count.
