@@ -73,21 +73,28 @@ class PaidJob:
         self._write()
 
     def _write(self) -> None:
-        text = json.dumps(
-            {"schema": SCHEMA, "source": self.source, "digest": self.digest, "steps": self.steps}, indent=1
-        )
-        partly = self.folder / f"{STATE_FILE}.partly"
-        try:
-            with partly.open("w", encoding="utf-8") as file:
-                file.write(text + "\n")
-                file.flush()
-                os.fsync(file.fileno())
-            partly.replace(self.folder / STATE_FILE)
-        except OSError as error:
-            raise OutputError(
-                f"The state of the job cannot be written to {self.folder} ({error.strerror}). Free disk space or give "
-                "another place with -o."
-            ) from error
+        state = {"schema": SCHEMA, "source": self.source, "digest": self.digest, "steps": self.steps}
+        keep(self.folder / STATE_FILE, state)
+
+
+def keep(path: Path, values: Any) -> None:
+    """Write JSON values, whole or not at all, and onto the disk.
+
+    Raises:
+        OutputError: It cannot be written.
+    """
+    partly = path.with_suffix(f".{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with partly.open("w", encoding="utf-8") as file:
+            file.write(json.dumps(values, indent=1) + "\n")
+            file.flush()
+            os.fsync(file.fileno())
+        partly.replace(path)
+    except OSError as error:
+        raise OutputError(
+            f"{path} cannot be written ({error.strerror}). Free disk space or give another place with -o."
+        ) from error
 
 
 @contextmanager

@@ -17,12 +17,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinematify.errors import EnvironmentFault, InputError, OutputError
+from kinematify.config.services import ADDRESS
+from kinematify.errors import EnvironmentFault, InputError
 from kinematify.generate.checklist import Fact, broken_facts, read_facts
 from kinematify.generate.delivery import BuildResult, deliver
 from kinematify.generate.kind_search import nearest_kinds
 from kinematify.generate.procedural import blueprint_file
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.providers.job import keep
 from kinematify.generate.providers.service import NotTaken, Service
 from kinematify.generate.request import PartRequest, Request, request_of
 
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
     from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.source import Progress, Prompt
 
-ADDRESS, KEY, MODEL = "KINEMATIFY_LLM_URL", "KINEMATIFY_LLM_KEY", "KINEMATIFY_LLM_MODEL"
+KEY, MODEL = "KINEMATIFY_LLM_KEY", "KINEMATIFY_LLM_MODEL"
 ANSWER_FILE = "answer.json"
 _KINDS, _PARAMETERS = 20, 14  # shown, and of each
 _NAMED = 16  # digits of the digest that name an exchange
@@ -163,7 +165,7 @@ class LanguageModel:
                 "--rounds or --budget, or take another model."
             )
         path = job.folder / ANSWER_FILE
-        _keep(path, best[0])
+        keep(path, best[0])
         return Written(path=path, made=best[1], rounds=rounds, tokens=tokens)
 
     def _service(self, progress: Progress) -> Service:
@@ -200,7 +202,7 @@ class LanguageModel:
             raise
         for folder in (job.folder, self.record):
             if folder is not None:
-                _keep(folder / f"{digest}.json", answer)
+                keep(folder / f"{digest}.json", answer)
         job.finish(digest)
         return answer
 
@@ -326,15 +328,3 @@ def _kept(path: Path) -> Any:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"The exchange {path} cannot be read ({error}). Remove it; it is asked for again.") from error
-
-
-def _keep(path: Path, values: Any) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partly = path.with_suffix(f".{os.getpid()}")
-        partly.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-        partly.replace(path)
-    except OSError as error:
-        raise OutputError(
-            f"{path} cannot be written ({error.strerror}). Free disk space or give another place."
-        ) from error

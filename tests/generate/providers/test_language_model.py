@@ -288,6 +288,39 @@ def test_what_is_left_is_listed_and_ends_with_one(server, tmp_path, monkeypatch,
     assert (tmp_path / "a" / "model.urdf").exists()
 
 
+def made_at(folder: Path, *more: str) -> int:
+    command = ["generate", *more, "--no-validation", "--no-preview"]
+    return run([*command, "-o", str(folder / f"made_{len(list(folder.iterdir()))}")])
+
+
+def test_a_model_whose_address_is_set_gets_what_the_reader_leaves(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, chat_server.KEY)
+    assert made_at(tmp_path, TEXT) == 0
+    assert made_at(tmp_path, "a frobnicated box with a lid", "--source", "reader") == 1
+    assert made_at(tmp_path, "a frobnicated box with a lid", "--seed", "1") == 1
+    assert server.requests == []
+    capsys.readouterr()
+    assert made_at(tmp_path, "a frobnicated box with a lid") == 0
+    said = capsys.readouterr().out
+    assert "The language model was asked (not read: frobnicated)." in said
+    assert "Drawn by" in said
+    assert len(server.requests) == 1
+    assert made_at(tmp_path, "a quux with a lid", "--rounds", "1") == 0
+    assert "The language model was asked (" in capsys.readouterr().out
+
+
+def test_a_model_that_fails_loses_nothing_that_was_read(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, "another key")
+    assert made_at(tmp_path, "a frobnicated box with a lid") == 1
+    said = capsys.readouterr().out
+    assert "in vain: The language model does not accept the key" in said
+    assert "Words not read: 'frobnicated'" in said
+    assert made_at(tmp_path, "a quux with a lid") == 2
+    assert "A language model was asked: The language model does not accept the key" in capsys.readouterr().err
+
+
 RECORDED = BENCH.parent / "recorded" / "blueprints"
 NOTICED = {
     "b1": [{"phrase": "a small vent each", "parts": ["vent"], "count": 2}],
