@@ -42,9 +42,7 @@ _TAKEN_BY: dict[str, tuple[str | None, ...]] = {
     "--time-limit": _SOURCES,
     "--budget": ("llm",),
     "--rounds": ("llm",),
-    "--record": ("llm",),
     "--replay": ("llm",),
-    "--resend": ("llm",),
 }
 """Options -> the sources that take them; None is the library."""
 
@@ -65,9 +63,7 @@ def generate(
     time_limit: float | None = None,
     budget: float | None = None,
     rounds: int | None = None,
-    record: str | Path | None = None,
     replay: str | Path | None = None,
-    resend: bool = False,
     up: str = "auto",
     scale: float | None = None,
     strict: bool = False,
@@ -95,9 +91,7 @@ def generate(
         time_limit: Of the program or an answer [s].
         budget: Number of tokens after which no round of the language model starts.
         rounds: Most answers of the language model.
-        record: Folder that keeps the answers of the language model.
-        replay: Such a folder to use; nothing is sent.
-        resend: Repeat questions that have no recorded answer.
+        replay: Folder with answers of the language model to use, ``OUT.job``; nothing is sent.
         up: Axis that points up in the parts of a source.
         scale: Metres per unit of them.
         strict: Write nothing unless all is as asked for and every word was read.
@@ -116,8 +110,7 @@ def generate(
     given = {
         "--category": category, "--set": settings, "--request": request, "--blueprint": blueprint,
         "--nearest": nearest, "--infer": inferred, "--seed": seed, "--image": images, "--command": program,
-        "--time-limit": time_limit, "--budget": budget, "--rounds": rounds, "--record": record, "--replay": replay,
-        "--resend": resend,
+        "--time-limit": time_limit, "--budget": budget, "--rounds": rounds, "--replay": replay,
     }  # fmt: skip
     _check(text, source, {name: value for name, value in given.items() if value not in (None, (), False)})
     if source is None and strict and text is None:
@@ -137,8 +130,8 @@ def generate(
 
         order = Order(
             out=place, config=chosen, text=text, images=tuple(map(Path, images)), seed=seed or 0, program=program,
-            time_limit=time_limit, budget=budget, rounds=rounds, record=None if record is None else Path(record),
-            replay=None if replay is None else Path(replay), resend=resend,
+            time_limit=time_limit, budget=budget, rounds=rounds,
+            replay=None if replay is None else Path(replay),
         )  # fmt: skip
         if source == "llm":
             answered = written_blueprint(order, report, validation=validation)
@@ -157,8 +150,6 @@ def _check(text: str | None, source: str | None, given: Mapping[str, Any]) -> No
             if source is None:
                 raise InputError(f"{option} needs {wanted}. Give it as well.")
             raise InputError(f"{option} cannot be combined with --source {source}; it needs {wanted}.")
-    if {"--record", "--replay"} <= given.keys():
-        raise InputError("--record and --replay exclude each other.")
     if source is not None:
         return
     ways = ("--category", "--request", "--blueprint")

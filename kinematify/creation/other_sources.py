@@ -49,9 +49,7 @@ class Order:
     time_limit: float | None
     budget: float | None
     rounds: int | None
-    record: Path | None
     replay: Path | None
-    resend: bool
 
 
 def made_parts(
@@ -75,7 +73,8 @@ def made_parts(
         raise InputError("--source command needs --command 'program {image} {out}'.")
     limit = order.time_limit or order.config.sources.command_seconds
     prompt = check_prompt(order.text, order.images, seed=order.seed)
-    with open_job(job_folder(order.out), "command", prompt.digest({"command": order.program})) as job:
+    job = job_folder(order.out)
+    with open_job(job, "command", prompt.digest({"command": order.program})):
         parts = run_command(order.program, limit, prompt, job, lambda stage, done: progress(stage, _MADE * done))
     progress("reading the parts", _MADE)
     read = load_assembly(parts.path, config=order.config.assembly, up=up, scale=scale, labels=parts.labels)
@@ -106,7 +105,7 @@ def written_blueprint(order: Order, progress: Progress, *, validation: bool) -> 
     settings = order.config.sources.language_model.model_copy(
         update={name: value for name, value in asked.items() if value is not None}
     )
-    model = language_model(settings, budget=order.budget, record=order.record, replay=order.replay)
+    model = language_model(settings, budget=order.budget, replay=order.replay)
 
     def judged(made: BuildResult) -> Sequence[str]:
         drawn = drawn_findings(made.blueprint) if made.request is None else ()
@@ -118,9 +117,8 @@ def written_blueprint(order: Order, progress: Progress, *, validation: bool) -> 
         return [*drawn, *in_blueprint_words(report.counted)]
 
     prompt = check_prompt(order.text, order.images, seed=0)
-    with open_job(job_folder(order.out), "llm", prompt.digest(model.options())) as job:
-        if order.resend:
-            job.resend()
+    job = job_folder(order.out)
+    with open_job(job, "llm", prompt.digest(model.options())):
         written = model.write(prompt, job, judged, progress)
     facts = {"source": "llm", "model": model.model, "text": order.text, "rounds": written.rounds}
     blueprint = written.made.blueprint
