@@ -43,6 +43,7 @@ _ROUND = 0.06  # of a side, by which two sides of what is round differ
 _FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cylinder 0.785
 _SHOWN = 0.5  # of the surface, that has the look of the whole at least
 _TOWARDS = 0.3  # of a way, that leads to a side
+_FRONT = 0.8  # of the width and the height of the whole, that its front has at least
 _DARK = 0.4  # brightness of what is dark at most
 _OWN_LOOK = ("rubber", "glass", "mirror")
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
@@ -52,7 +53,7 @@ _JOINTS = words_of("hinge slide tilt pan spin")
 """Nouns that mean what moves so where no part is called so: what moves most of the object."""
 _ALIKE = pairs(
     "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
-    "cab cabin house|cabin cab house|boom jib|sail blade rotor|blade rotor|"
+    "cab cabin house|cabin cab house|boom jib|sail blade rotor|blade rotor|propeller rotor|rotor propeller|"
     "wing leaf|leaf sash door|casement sash|screen display lid|"
     "display screen|dial knob|"
     "handle lever|lever handle|arm lever|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|"
@@ -280,13 +281,14 @@ def sides_meant(family: Kind, lengths: Sequence[float]) -> Sequence[str]:
     """Return the names of some lengths of the whole [m] of which none is said.
 
     A single one is its length, its only size, or the largest of the object as it is usual. Of several, the width is
-    first, unless another order fits the proportions of the kind much better.
+    first, unless another order fits the proportions of the kind much better; none of a single one far from usual.
     """
     known = [item.name for item in family.parameters if item.name in (*_AXES, "length", "diameter")]
     extents = dict(zip(_AXES, np.ptp(closed(build(family, {})).assembly.bounds, axis=0), strict=True))
     if len(lengths) == 1:
         usual = known[0] if len(known) == 1 else max(extents, key=extents.__getitem__)
-        return ["length" if "length" in known else usual]
+        fits = 0.2 < lengths[0] / max(extents.values()) < 5.0
+        return ["length" if "length" in known else usual] if fits else []
 
     def misfit(names: tuple[str, ...]) -> float:
         off = sum(abs(math.log(far / extents[name])) for name, far in zip(names, lengths, strict=True))
@@ -317,12 +319,13 @@ def _sized(made: Blueprint, request: Request) -> Blueprint:
 
 
 def _sizes(made: Blueprint, name: str) -> list[float]:
-    """Sizes of all of an object, and of its base link; the diameter is that of a round part, if the whole is not round.
+    """Sizes of all of an object, of its base link, and of what is nearly as wide and high: the leaf in a frame.
 
-    The part has to be half as large.
+    The diameter is that of a round part, if the whole is not round; the part has to be half as large.
     """
     shut = closed(made)
-    boxes = [np.ptp(bounds, axis=0) for bounds in (shut.assembly.bounds, shut.parts[0].bounds)]
+    whole, *others = (np.ptp(item.bounds, axis=0) for item in (shut.assembly, *shut.parts))
+    boxes = [whole, others[0], *(box for box in others[1:] if (box > _FRONT * whole)[::2].all())]
     if name == "diameter" and not _has_round_sides(boxes[0]):
         turned = [np.ptp(part.bounds, axis=0) for part in shut.parts if _are_round(shut, [part.name])]
         most = max(turned, key=np.median, default=boxes[0])

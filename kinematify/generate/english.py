@@ -184,7 +184,7 @@ _BARE = re.compile(
 )
 """A size or a range without a unit."""
 _BEFORE = re.compile(
-    rf"\b(width|depth|height|length|diameter|thickness)(?: (?:{_OF}))* ({_NUMBER} ?(?:{_UNIT}))(?![a-z])"
+    rf"\b(width|depth|height|length|diameter|thickness|span|wingspan)(?: (?:{_OF}))* ({_NUMBER} ?(?:{_UNIT}))(?![a-z])"
 )
 """A size behind its name."""
 _PURPOSE = re.compile(
@@ -237,6 +237,8 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         rf"((?:rotat|turn|swivel|spin|tilt|swing)\w*(?: (?:up|down|by|to|through))*) ({_NUMBER})(?=$|[,.;]| and )",
         r"\1 \2 deg",
     ),
+    (r"(\d+ ?(?:deg\w*|°)) (?:to |on )?(?:either|each|both) sides?", r"\1 either way"),
+    (r"\bof travel\b", "of stroke"),
     (r"\blight (?=(?:oak|pine|wood|wooden|beech|birch|maple|walnut|ash)\b)", "pale "),
     (r"(?<!merry )\bgo(?:es|ing)? round(?! (?:the|a|its)\b)", "turn endlessly"),
     (rf"(±|\bat) ?({_NUMBER})(?=$|[,.;]| and )", r"\1 \2 deg"),

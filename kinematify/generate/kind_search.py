@@ -93,8 +93,10 @@ def repaired(word: str, known: frozenset[str]) -> str | None:
 
     None if there is none.
     """
+    if len(word) < 5 or word in known:
+        return None
     near = [*difflib.get_close_matches(word, known, cutoff=0.85), *(it for it in known if sorted(it) == sorted(word))]
-    return next((it for it in near if it[0] == word[0]), None) if len(word) > 4 and word not in known else None
+    return next((it for it in near if it[0] == word[0] and abs(len(it) - len(word)) < 2), None)
 
 
 def nearest_kinds(text: str, count: int = 5) -> list[Kind]:

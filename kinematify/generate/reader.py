@@ -78,7 +78,7 @@ _PHRASES = {
     "hinge": "H[pdP_i]*(?P<edge>s)_*",
     "verb": "(?P<words>(?:g(?!b)|[mMNSHtke])(?:[mMNSHgtkevf_dP]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
     "(?:[piodfvb_]*(?P<far>[qr])(?!D)(?:B|ok|k|(?P<then>[Sv]+))?)?",
-    "attribute": "[cqxs]|a(?=c)",
+    "attribute": "[cqxs]|a(?=[c,&])",
     "each": "P",
     "rest": ".",
 }
@@ -135,7 +135,7 @@ class Sentence:
     things: dict[str, Facts] = field(default_factory=dict)
     """By noun; the whole by an empty one."""
     ahead: Facts = field(default_factory=dict)
-    """Facts of the next noun: a row of knobs, no doors, pull the handle."""
+    """Facts of the next noun: a row of knobs, no doors."""
     notes: list[str] = field(default_factory=list)
     moves: list[tuple[str, Any, Sequence[int]]] = field(default_factory=list)
     """Motions and form of the whole, with the units that say it."""
@@ -210,8 +210,7 @@ class Sentence:
         elif before in ("dwh" if word in _NAMED else "sDfcP" if word in ("one", "ones") else ""):
             role = "n"  # its tilt, the left one
         elif own:
-            is_verb = re.search("(you|to|can) .|. (it|the)$", self._text(k - 1, k + 2))  # you pull the handle
-            role = ("m" if is_verb else "N") if "motion" in means else "n" if word == lemma(word) else "Z"
+            role = "N" if "motion" in means else "n" if word == lemma(word) else "Z"
         elif word in ("in", "of"):
             role = word[0]
         elif role == "m" and word.endswith("s") and word[:-1] in WORDS:
@@ -538,10 +537,7 @@ class Sentence:
         facts: Facts = {"towards": heads[0]} if heads and (how or share) else {}
         if any(self._mean(j, "coupled") for j in range(k, found.end())):
             facts["coupled"] = True
-        if how and far < 0 and self.roles[found.end() - 1] in "md" and self._span(found.end()):
-            self.ahead = {"motion": how, **facts}  # pull the handle
-            self._take(range(*found.span()))
-        elif not (share is None or owner or how) and (place := re.search("s[^,hR]*$", self.roles[:k])):
+        if not (share is None or owner or how) and (place := re.search("s[^,hR]*$", self.roles[:k])):
             self._take(range(place.start(), found.end()), "!")  # the top half is open
         else:
             for noun in self._owners(k, owner):
@@ -598,7 +594,9 @@ class Sentence:
             self.subject, end = subject if is_place else self.subject, span[1]
         elif subject:
             other = next((noun for noun in reversed(self.things) if noun not in ("", subject)), "")
-        if {subject, other} <= self.things.keys() and other != subject:  # above (1) or below (-1) it
+        if self._text(k + 1) in ("each", "every"):
+            self._take(range(k, end), "!")
+        elif "" not in {subject, other} <= self.things.keys() and other != subject:  # above (1) or below (-1) it
             mine, its = (self.things[noun] for noun in (subject, other))
             its.setdefault("row", mine.setdefault("row", its.get("row", 10 + step) - step) + step)
             self._take([k], subject)
@@ -625,7 +623,7 @@ class Sentence:
     def _whole(self, what: str, value: Any, units: Sequence[int]) -> None:
         if what == "sides":
             what, value = "size", dict(zip(sides_meant(self.family, value), value, strict=False))
-        if what == "size":
+        if what == "size" and value:
             sizes = self.things.setdefault("", {})
             for name, size in value.items():
                 if sizes.setdefault(name, size) != size:
@@ -640,7 +638,7 @@ class Sentence:
                 self._set("open", value, units)
         elif what == "hinge":
             self._add("door", units, hinge=value)
-        elif what in ("motion", "towards", "round", "shade", "coupled"):
+        elif what in ("motion", "towards", "round", "shade"):
             self.moves.append((what, value, units))
             self._take(units)
 
@@ -754,8 +752,7 @@ class Sentence:
     def _holds(self, what: str, value: Any, word: str, made: Blueprint) -> bool:
         """True if what is said of the whole is so; that it folds or rocks is only known of a kind that says so."""
         if what in CHECKS:
-            moving = [joint.child for joint in made.joints]
-            return CHECKS[what][0](made, moving if what == "coupled" else [made.parts[0].name], value)
+            return CHECKS[what][0](made, [made.parts[0].name], value)
         if value == "hinge" and not re.match("turn|rotat|swing|hing|pivot", word):
             about = (*self.family.words, self.family.about, *self.family.part_words)
             return any(word[:4] in said.lower() for said in about)
@@ -776,12 +773,10 @@ class Sentence:
 
     def _unread(self, taken: Mapping[int, str], lost: set[str], there: set[str]) -> Iterator[str]:
         """Words of content that nothing took, or a noun that is no part; a quotation with the words between them."""
-        quoted, head = [list[int]()], lemma(self._text(self.stop - 1))
+        quoted = [list[int]()]
         for k, role in enumerate(self.roles[: len(self.units)]):
             owner, words = taken.get(k), key_of(self._text(k))
-            is_known = {word.removesuffix("ed") for word in words} <= there or kind_called(
-                [*words, head]
-            ) is self.family
+            is_known = {word.removesuffix("ed") for word in words} <= there
             asks = role in _CONTENT or _ASKING & self.units[k].means.keys() or (k < self.start and _WHERE & {*words})
             if owner == "!" or (asks and (owner in lost or (owner is None and not is_known))):
                 quoted[-1].append(k)

@@ -106,6 +106,10 @@ def test_what_was_asked_for_and_is_otherwise_is_listed():
         ("a corner cupboard", ("corner",)),
         ("a cabinet with a clock and a bell, eleven red figures", ("clock and a bell, eleven red figures",)),
         ("a cabinet with two doors, and the rest shut", ()),
+        ("a two-door wardrobe with a drawer below each door", ("below each",)),
+        ("an office swivel chair, 12 cm", ("12 cm",)),
+        ("a robot vacuum, round, 33 cm across", ()),
+        ("a sectional garage door, 2.4 m wide by 2.1 m high", ()),
         ("a filing cabinet, like they have in offices", ()),
     ],
 )
@@ -134,6 +138,15 @@ def test_the_kind_is_found_behind_what_somebody_says_of_himself(text, kind):
 def test_two_sizes_are_those_that_fit_the_proportions_of_the_kind():
     assert read_sentence("a hospital bed, 2.1 m x 0.9 m").request.size == {"depth": 2.1, "width": 0.9}
     assert read_sentence("a desk 1.4 m x 0.7 m").request.size == {"width": 1.4, "depth": 0.7}
+    assert "row" not in read_sentence("a fridge freezer 1.8 m tall, freezer below").request.size
+    fan = read_sentence("a tower fan that oscillates 60 degrees either side").request
+    assert fan.parts["hinge"].range == pytest.approx((-QUARTER * 2 / 3, QUARTER * 2 / 3))
+
+
+def test_a_word_that_is_two_letters_off_is_no_slip_of_the_pen():
+    for text in ("a grey dumpster", "a spiral staircase"):
+        with pytest.raises(InputError, match="No kind of object is called"):
+            read_sentence(text)
 
 
 def test_a_way_in_metres_is_that_of_the_slide_below_what_turns():
