@@ -61,7 +61,7 @@ _ALIKE = pairs(
     "cymbal top|swing seat|foot base stand|stand base|pedestal base|disc base"
 )
 """Noun -> what it may be where no part is called so."""
-_BASE = words_of("body base frame housing case casing cabinet")
+_BASE = words_of("body frame housing case casing cabinet")
 """Nouns that mean the base link where no part is called so."""
 _HANDLES = tuple(words_of("handle knob pull grip"))
 """Ends of nouns of what has the look of all handles of an object."""

@@ -230,7 +230,13 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         "",
     ),
     (r",? ?(?:and )?(?:the )?(?:rest|others|other ones) (?:(?:are|is|stay|remain|all) )*(?:shut|closed)\b", ""),
-    (r",? (?:just )?(?:like|as) (?:they|the ones?|those|you|we|in|on|at)\b[^,;.:]*", ""),
+    (
+        (
+            r",? (?:just )?(?:like|as) (?:they|the ones?|those|you|we|in|on|at)\b[^,;.:]*?"
+            r"(?=$|[,;.:]| with | that | having | whose | which | and )"
+        ),
+        "",
+    ),
     (r"\b(?:pale|pastel) (?=(?:red|green|blue|yellow|orange|brown|pink|purple|gr[ea]y)\b)", "light "),
     (r"^((?:an? |the )?)built in ", r"\1"),
     (

@@ -111,6 +111,8 @@ def test_what_was_asked_for_and_is_otherwise_is_listed():
         ("a robot vacuum, round, 33 cm across", ()),
         ("a sectional garage door, 2.4 m wide by 2.1 m high", ()),
         ("a filing cabinet, like they have in offices", ()),
+        ("a laptop like the ones in offices with two screens", ("two screens",)),
+        ("a desk with an oak base", ("oak base",)),
     ],
 )
 def test_what_no_part_is_known_of_is_quoted_and_not_said_to_lack(text, unread):
