@@ -334,10 +334,8 @@ def _sizes(made: Blueprint, name: str) -> list[float]:
     The diameter is that of a round part, if the whole is not round; the part has to be half as large.
     """
     shut = closed(made)
-    whole, *others = (
-        np.ptp(bounds, axis=0) for bounds in (shut.assembly.bounds, *(part.bounds for part in shut.parts))
-    )
-    boxes = [whole, others[0], *(box for box in others[1:] if (box > _FRONT * whole)[::2].all())]
+    whole, others = np.ptp(shut.assembly.bounds, axis=0), [np.ptp(part.bounds, axis=0) for part in shut.parts]
+    boxes = [whole, others[0], *(box for box in others if (box > _FRONT * whole)[::2].all())]
     if name == "diameter":
         about = [whole] if _has_round_sides(whole) else []
         turned = [np.ptp(part.bounds, axis=0) for part in shut.parts if not about and _are_round(shut, [part.name])]
