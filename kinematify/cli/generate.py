@@ -110,10 +110,11 @@ def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple
 )
 @click.option("--rounds", type=click.IntRange(min=1), metavar="N", help="Most answers of the language model.")
 @click.option(
-    "--record", type=click.Path(path_type=Path), metavar="DIR", help="Save answers of the language model for --replay."
+    "--replay",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Use the answers in such a folder, OUT.job; send nothing.",
 )
-@click.option("--replay", type=click.Path(path_type=Path), metavar="DIR", help="Use what was recorded; send nothing.")
-@click.option("--resend", is_flag=True, help="Repeat questions that have no recorded answer.")
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @scale_option
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to write.")
@@ -148,8 +149,8 @@ def command(*, words: tuple[str, ...], schema: str | None, listing: bool, json_t
 
     A language model (llm) fills the request or draws a blueprint, and lists what the sentence asks for; the command
     measures that and sends back what does not hold. With --source command, another generator makes the parts from
-    --image or --text, and the joints are inferred. The job is saved beside OUT (OUT.job): the same command resumes it,
-    and no step is paid for twice.
+    --image or --text, and the joints are inferred. Every answer is saved beside OUT (OUT.job): the same command resumes
+    there, and no answer is paid for twice.
     """
     sentence, text, category, out = (" ".join(words), given["text"], given["category"], given["out"])
     if words and text is not None:

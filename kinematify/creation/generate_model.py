@@ -43,9 +43,7 @@ _TAKEN_BY: dict[str, tuple[str | None, ...]] = {
     "--time-limit": _SOURCES,
     "--budget": ("llm",),
     "--rounds": ("llm",),
-    "--record": ("llm",),
     "--replay": ("llm",),
-    "--resend": ("llm",),
 }
 """Options -> the sources that take them; None is the library."""
 
@@ -66,9 +64,7 @@ def generate(
     time_limit: float | None = None,
     budget: float | None = None,
     rounds: int | None = None,
-    record: str | Path | None = None,
     replay: str | Path | None = None,
-    resend: bool = False,
     up: str = "auto",
     scale: float | None = None,
     strict: bool = False,
@@ -97,9 +93,7 @@ def generate(
         time_limit: Of the program or an answer [s].
         budget: Number of tokens after which no round of the language model starts.
         rounds: Most answers of the language model.
-        record: Folder that keeps the answers of the language model.
-        replay: Such a folder to use; nothing is sent.
-        resend: Repeat questions that have no recorded answer.
+        replay: Folder with answers of the language model to use, ``OUT.job``; nothing is sent.
         up: Axis that points up in the parts of a source.
         scale: Metres per unit of them.
         strict: Write nothing unless all is as asked for and every word was read.
@@ -118,8 +112,7 @@ def generate(
     given = {
         "--category": category, "--set": settings, "--request": request, "--blueprint": blueprint,
         "--nearest": nearest, "--infer": inferred, "--seed": seed, "--image": images, "--command": program,
-        "--time-limit": time_limit, "--budget": budget, "--rounds": rounds, "--record": record, "--replay": replay,
-        "--resend": resend,
+        "--time-limit": time_limit, "--budget": budget, "--rounds": rounds, "--replay": replay,
     }  # fmt: skip
     has_model = replay is not None or bool(os.environ.get(ADDRESS, "").strip())
     may_ask = has_model and source is None and text is not None and not nearest and seed is None
@@ -156,8 +149,8 @@ def generate(
             )  # fmt: skip
         try:
             answered = written_blueprint(
-                prompt, place, chosen, report, rounds=rounds, time_limit=time_limit, resend=resend, budget=budget,
-                record=record and Path(record), replay=replay and Path(replay), validation=validation,
+                prompt, place, chosen, report, rounds=rounds, time_limit=time_limit, budget=budget,
+                replay=replay and Path(replay), validation=validation,
             )  # fmt: skip
         except KinematifyError as error:
             if isinstance(read, BuildResult):
@@ -181,8 +174,6 @@ def _check(text: str | None, source: str | None, given: Mapping[str, Any], may_a
             if source is None:
                 raise InputError(f"{option} needs {wanted}. Give it as well.")
             raise InputError(f"{option} cannot be combined with --source {source}; it needs {wanted}.")
-    if {"--record", "--replay"} <= given.keys():
-        raise InputError("--record and --replay exclude each other.")
     if maker is not None:
         return
     ways = ("--category", "--request", "--blueprint")

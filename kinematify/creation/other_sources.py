@@ -60,7 +60,8 @@ def made_parts(
     if program is None:
         raise InputError("--source command needs --command 'program {image} {out}'.")
     limit = time_limit or config.sources.command_seconds
-    with open_job(job_folder(out), "command", prompt.digest({"command": program})) as job:
+    job = job_folder(out)
+    with open_job(job, "command", prompt.digest({"command": program})):
         parts = run_command(program, limit, prompt, job, lambda stage, done: progress(stage, _MADE * done))
     progress("reading the parts", _MADE)
     read = load_assembly(parts.path, config=config.assembly, up=up, scale=scale, labels=parts.labels)
@@ -86,7 +87,6 @@ def written_blueprint(
     *,
     rounds: int | None,
     time_limit: float | None,
-    resend: bool,
     validation: bool,
     **options: Any,
 ) -> Written:
@@ -111,9 +111,8 @@ def written_blueprint(
             report = validate(Path(folder, MODEL_FILE))
         return [*drawn, *in_blueprint_words(report.counted)]
 
-    with open_job(job_folder(out), "llm", prompt.digest(model.options())) as job:
-        if resend:
-            job.resend()
+    job = job_folder(out)
+    with open_job(job, "llm", prompt.digest(model.options())):
         written = model.write(prompt, job, judged, progress)
     facts = {"source": "llm", "model": model.model, "text": prompt.text, "rounds": written.rounds}
     blueprint = written.made.blueprint

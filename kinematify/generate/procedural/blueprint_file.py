@@ -82,7 +82,7 @@ Name = Annotated[str, Field(max_length=64)]
 class _Described(BaseModel):
     """Unknown fields and numbers that are not finite are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
 
 
 def _in_full(values: Any) -> Any:
