@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull
-from kinematify.generate.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -33,10 +33,9 @@ class Bars:
             rng: Draws sizes.
             pin: Radius of the pins [m].
         """
-        self.workshop = Workshop(name, material="metal")
+        self.builder = ObjectBuilder(name, carves=True, look=("metal", None))
         self.rng, self.pin = rng, pin
         self.thick, self.gap = 1.6 * pin, 0.08 * pin
-        self._name = name
         self._layer: dict[str, int] = {}
 
     def between(self, low: float, high: float) -> float:
@@ -51,28 +50,28 @@ class Bars:
 
     def body(self, name: str, layer: int, *points: Plane, more: Sequence[Manifold] = ()) -> None:
         """Add a bar, with more solids that belong to it."""
-        self.workshop.body(name, *self.plates(layer, *points), *more)
+        self.builder.part(name, *self.plates(layer, *points), *more)
         self._layer[name] = layer
 
     def bolt(self, inner: str, outer: str, at: Plane) -> None:
         """Add a pin of the one body in a hole of the other; no joint yet."""
         (x, z), mine, its = at, self.span(self._layer[inner]), self.span(self._layer[outer])
-        self.workshop.cut(outer, bore(self.pin, self.gap, (x, its[0] - self.thick, z), (x, its[1] + self.thick, z)))
-        self.workshop.add(inner, cylinder(self.pin, (x, min(mine[0], its[0]), z), (x, max(mine[1], its[1]), z)))
+        self.builder.cut(outer, bore(self.pin, self.gap, (x, its[0] - self.thick, z), (x, its[1] + self.thick, z)))
+        self.builder.part(inner, cylinder(self.pin, (x, min(mine[0], its[0]), z), (x, max(mine[1], its[1]), z)))
 
     def turn(self, child: str, parent: str, at: Plane, *, pin_of: str) -> None:
         """Add a hinge of the tree."""
         self.bolt(pin_of, parent if pin_of == child else child, at)
-        self.workshop.turns(child, parent, (0, 1, 0), (at[0], 0, at[1]), (-1.0, 1.0))
+        self.builder.hinge(child, parent, (0, 1, 0), (at[0], 0, at[1]), 1.0, -1.0)
 
     def close(self, one: str, other: str, at: Plane, *, pin_of: str) -> None:
         """Add a hinge that closes a chain."""
         self.bolt(pin_of, other if pin_of == one else one, at)
-        self.workshop.closes(one, other, (at[0], 0, at[1]))
+        self.builder.close(other, one, (at[0], 0, at[1]))
 
     def finish(self) -> Blueprint:
         """Return the object as it is shown."""
-        return self.workshop.finish(self._name, {}, style="clean", clearance=self.gap, rng=self.rng)
+        return self.builder.finish()
 
     def span(self, layer: int) -> tuple[float, float]:
         """Return where a layer begins and ends along y [m]."""

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import pose_at, rotation_about
 
 if TYPE_CHECKING:
@@ -23,25 +23,26 @@ if TYPE_CHECKING:
 
 
 class _Chains:
-    """A workshop with the clearance and the panels of one object."""
+    """A builder with the clearance and the panels of one object."""
 
     def __init__(self, rng: np.random.Generator) -> None:
-        self.rng, self.workshop, self.links = rng, Workshop("chain", material="wood"), 0
+        self.rng, self.links = rng, 0
+        self.builder = ObjectBuilder("chain", carves=True, look=("wood", None))
         self.gap = float(rng.choice([0.0, 0.0005, 0.001, 0.002, 0.004]))
         self.thick = float(np.exp(rng.uniform(np.log(0.001), np.log(0.03))))
         self.barrels = bool(rng.random() < 0.25)
 
     def link(self, parent: str, frame: FloatArray, width: float, reach: float, *, pin: bool = False) -> str:
         """A panel from the origin of `frame` along v, hinged about u; a bar about n where a pin holds it."""
-        seen = self.workshop.from_frame(frame[:3])
+        seen = self.builder.from_frame(frame[:3])
         t, half = 0.5 * self.thick, 0.5 * width
         start = -half if pin else self.gap
-        name = seen.body(f"link_{self.links}", box((-half, start, -t), (half, reach + (half if pin else 0.0), t)))
+        name = seen.part(f"link_{self.links}", box((-half, start, -t), (half, reach + (half if pin else 0.0), t)))
         if pin or self.barrels:
             end = (0.0, 0.0, t + self.thick) if pin else (half, 0.0, 0.0)
-            seen.add(name, cylinder(0.3 * half if pin else t, (0, 0, -t) if pin else (-half, 0, 0), end, segments=16))
+            seen.part(name, cylinder(0.3 * half if pin else t, (0, 0, -t) if pin else (-half, 0, 0), end, segments=16))
         axis, level = ((0, 0, 1), 0.0) if pin else ((1, 0, 0), float(self.rng.choice([-t, 0.0, t])))
-        seen.turns(name, parent, axis, (0.0, 0.0, level), (-3.0, 3.0))
+        seen.hinge(name, parent, axis, (0.0, 0.0, level), 3.0, -3.0)
         self.links += 1
         return name
 
@@ -56,10 +57,10 @@ class _Chains:
             frame, width = frame @ pose_at((0, reach + self.gap, 0)), width * growth
 
     def _knob(self, parent: str, frame: FloatArray, width: float, reach: float) -> None:
-        seen, r = self.workshop.from_frame(frame[:3]), 0.1 * min(width, reach)
+        seen, r = self.builder.from_frame(frame[:3]), 0.1 * min(width, reach)
         place = np.array([0.3 * width, 0.7 * reach, 0.5 * self.thick + self.gap])
-        seen.body(f"knob_{self.links}", cylinder(r, place, (*place[:2], place[2] + 2 * r), segments=16))
-        seen.turns(f"knob_{self.links}", parent, (0, 0, 1), place)
+        seen.part(f"knob_{self.links}", cylinder(r, place, (*place[:2], place[2] + 2 * r), segments=16))
+        seen.spin(f"knob_{self.links}", parent, (0, 0, 1), place)
         self.links += 1
 
 
@@ -69,8 +70,8 @@ def chain(number: int) -> Blueprint:
     name, draw = _KINDS[number % len(_KINDS)]
     drawn = _Chains(rng)
     draw(drawn)
-    drawn.workshop.settle()
-    return drawn.workshop.finish(f"{name}_{number}", {"seed": number}, style="clean", clearance=drawn.gap, rng=rng)
+    drawn.builder.settle()
+    return drawn.builder.finish(f"{name}_{number}", {"seed": number})
 
 
 def _carton(d: _Chains) -> None:
@@ -79,7 +80,7 @@ def _carton(d: _Chains) -> None:
     *size, h = rng.uniform(0.1, 0.8, 3)
     half, wall = 0.5 * np.array(size), min(d.thick, 0.01)
     solid = box((*-half, 0), (*half, h))
-    d.workshop.body("body", solid - box((*(wall - half), wall), (*(half - wall), 2 * h)))
+    d.builder.part("body", solid - box((*(wall - half), wall), (*(half - wall), 2 * h)))
     shut = rng.random() < 0.25
     for k in range(int(rng.choice([1, 2, 4, 4]))):
         # Flaps that are shut lie on each other, one pair above the other one.
@@ -103,7 +104,7 @@ def _leaves(d: _Chains) -> None:
     if right or rng.random() < 0.7:
         solids.append(box((wide, -deep / 2, 0), (wide + t, deep / 2, h)))
         solids += [box((-t, -deep / 2, z), (wide + t, deep / 2, z + t)) for z in (h, -t)[: int(rng.integers(1, 3))]]
-    d.workshop.body("body", *solids)
+    d.builder.part("body", *solids)
     rows = int(rng.choice([1, 1, 1, 2, 3]))
     fold = float(rng.choice([0.0, 0.0, rng.uniform(0.05, 1.3)]))
     for row in range(rows):
@@ -118,7 +119,7 @@ def _boards(d: _Chains) -> None:
     rng = d.rng
     half = 0.5 * rng.uniform(0.15, 1.5, 2)
     high = d.thick * float(rng.choice([1.0, 1.0, 3.0, rng.uniform(1, 20)]))
-    d.workshop.body("body", box((*-half, -high), (*half, 0)))
+    d.builder.part("body", box((*-half, -high), (*half, 0)))
     if rng.random() < 0.2:
         for k in range(int(rng.integers(1, 4))):
             frame, width = _side(0, half, d.gap + (k + 0.5) * (d.thick + d.gap), inwards=True)
@@ -139,7 +140,7 @@ def _bars(d: _Chains) -> None:
     rng = d.rng
     d.thick = rng.uniform(0.002, 0.03)
     width, size = d.thick * rng.uniform(1.0, 5.0), rng.uniform(0.03, 0.4, 3)
-    d.workshop.body("body", box(-size / 2, size / 2))
+    d.builder.part("body", box(-size / 2, size / 2))
     for side in (1.0, -1.0)[: int(rng.choice([1, 1, 2]))]:
         frame = pose_at((0, 0, side * (0.5 * size[2] + d.gap + 0.5 * d.thick)), np.diag([1.0, side, side]))
         parent = "body"

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.solids import box, cylinder, union
-from kinematify.generate.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,13 +71,13 @@ def compose(seed: int) -> Blueprint:
     size = np.exp(rng.uniform(np.log(0.05), np.log(1.2), size=3))
     size = np.maximum(size, 0.15 * size.max())
     low = np.array([-0.5 * size[0], -0.5 * size[1], 0.0])
-    workshop = Workshop("composed", material="wood")
+    builder = ObjectBuilder("composed", carves=True, look=("wood", None))
     hollow = rng.random() < 0.4
     solid = box(low, low + size)
     wall = 0.06 * float(size.min())
     if hollow:
         solid -= box(low + wall, low + size - wall)
-    workshop.body("carrier", solid)
+    builder.part("carrier", solid)
     seats = _seats(low, size, int(rng.integers(1, 7)), rng)
     opened = float(rng.uniform(0.05, 0.6)) if rng.random() < 0.2 else 0.0
     for k, seat in enumerate(seats):
@@ -86,21 +86,23 @@ def compose(seed: int) -> Blueprint:
         state = rng.bit_generator.state
         for i, part in enumerate(repeated):
             rng.bit_generator.state = state
-            _mount(workshop, f"part_{k}_{i}", part, recipe(part, rng, wall), opened)
-    return workshop.finish(f"composed_{seed}", {"seed": seed}, style="clean", clearance=0.001, rng=rng)
+            _mount(builder, f"part_{k}_{i}", part, recipe(part, rng, wall), opened)
+    return builder.finish(f"composed_{seed}", {"seed": seed})
 
 
-def _mount(workshop: Workshop, name: str, seat: _Seat, fitted: _Fitted, opened: float) -> None:
+def _mount(builder: ObjectBuilder, name: str, seat: _Seat, fitted: _Fitted, opened: float) -> None:
     if fitted.removed is not None:
-        workshop.cut("carrier", fitted.removed)
+        builder.cut("carrier", fitted.removed)
     if fitted.added is not None:
-        workshop.add("carrier", fitted.added)
-    workshop.body(name, fitted.child)
-    if fitted.turns:
-        limits = None if fitted.reach > 6.0 else (0.0, fitted.reach)
-        workshop.turns(name, "carrier", fitted.axis, fitted.pivot, limits, rest=opened)
+        builder.part("carrier", fitted.added)
+    builder.part(name, fitted.child)
+    axis, pivot, reach = fitted.axis, fitted.pivot, fitted.reach
+    if not fitted.turns:
+        builder.slide(name, "carrier", axis, reach, pivot=pivot, rest=opened * reach)
+    elif reach > 6.0:
+        builder.spin(name, "carrier", axis, pivot)
     else:
-        workshop.slides(name, "carrier", fitted.axis, fitted.pivot, (0.0, fitted.reach), rest=opened)
+        builder.hinge(name, "carrier", axis, pivot, reach, rest=opened * reach)
 
 
 def _seats(low: FloatArray, size: FloatArray, count: int, rng: np.random.Generator) -> list[_Seat]:

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.generate.library.builder import ModelingStyle, ObjectBuilder
-from kinematify.generate.library.kind import KINDS, carry_out
-from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.library.kind import KINDS
+from kinematify.generate.procedural.builder import ModelingStyle, ObjectBuilder
 from kinematify.generate.registry import all_kinds
 from kinematify.robot.joint_type import JointType
 
@@ -92,12 +91,11 @@ def style_of_somebody(rng: np.random.Generator) -> ModelingStyle:
 def _drawn_by(family: Kind, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:
     """An object of a kind that is drawn, with everything drawn."""
     assert family.draw is not None, family.name
-    workshop = Workshop(family.name, material="plastic")
-    builder = ObjectBuilder(family.name, style, workshop, rng)
+    builder = ObjectBuilder(family.name, style, rng)
     taken = family.draw.__code__.co_varnames[: family.draw.__code__.co_argcount]
     given = {item.name: _some(item, builder) for item in family.parameters if item.name in taken}
-    carry_out(family.draw, builder, given, {"material": "", "color": "", "open": 0.0})
-    return workshop.finish(family.name, {}, style="clean", clearance=style.gap, rng=rng)
+    family.make(builder, {**given, "material": "", "color": "", "open": 0.0})
+    return builder.finish()
 
 
 def _some(asked: Parameter, builder: ObjectBuilder) -> Value:

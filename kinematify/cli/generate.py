@@ -96,8 +96,9 @@ def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple
 )
 @click.option(
     "--source",
-    type=click.Choice(["command", "llm"]),
-    help="Who makes the object: your own program (command), or a language model (llm; address in KINEMATIFY_LLM_URL).",
+    type=click.Choice(["reader", "command", "llm"]),
+    help="Who makes the object: the reader of sentences alone, your own program, or a language model (address in "
+    "KINEMATIFY_LLM_URL). Default: the reader; the language model where words are left and the address is set.",
 )
 @click.option("--command", "program", metavar="WORDS", help="Your program, with {image}, {text}, {seed} and {out}.")
 @click.option("--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Limit of the program or answer.")
@@ -109,10 +110,11 @@ def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple
 )
 @click.option("--rounds", type=click.IntRange(min=1), metavar="N", help="Most answers of the language model.")
 @click.option(
-    "--record", type=click.Path(path_type=Path), metavar="DIR", help="Save answers of the language model for --replay."
+    "--replay",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Use the answers in such a folder, OUT.job; send nothing.",
 )
-@click.option("--replay", type=click.Path(path_type=Path), metavar="DIR", help="Use what was recorded; send nothing.")
-@click.option("--resend", is_flag=True, help="Repeat questions that have no recorded answer.")
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @scale_option
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to write.")
@@ -141,12 +143,14 @@ def command(*, words: tuple[str, ...], schema: str | None, listing: bool, json_t
 
     The command also ends with 1 if the model has an error; see `kinematify validate`.
 
-    Without --source nothing is downloaded: objects are built from a library of kinds.
+    Objects are built from a library of kinds. If KINEMATIFY_LLM_URL names a server, a sentence of which the reader
+    leaves words, or whose kind it does not know, is sent there, which may cost money; --source reader, --seed and
+    --nearest send nothing.
 
-    With --source, another generator makes the parts from --image or --text, and the joints are inferred. A language
-    model (llm) fills the request or draws a blueprint, and lists what the sentence asks for; the command measures that
-    and sends back what does not hold. The job is saved beside OUT (OUT.job): the same command resumes it, and no step
-    is paid for twice.
+    A language model (llm) fills the request or draws a blueprint, and lists what the sentence asks for; the command
+    measures that and sends back what does not hold. With --source command, another generator makes the parts from
+    --image or --text, and the joints are inferred. Every answer is saved beside OUT (OUT.job): the same command resumes
+    there, and no answer is paid for twice.
     """
     sentence, text, category, out = (" ".join(words), given["text"], given["category"], given["out"])
     if words and text is not None:
@@ -240,7 +244,7 @@ def _score(done: GeneratedModel) -> ObjectScore | None:
 def _read(made: BuildResult) -> str:
     """The request as it was read, for who wants to see whether that is what was meant."""
     if made.request is None:
-        return ""
+        return "\n".join(made.notes)
     asked = made.request
     facts = [f"{name} {value}" for name, value in asked.parameters.items()]
     facts += [f"{name} {value:.3g} m" for name, value in asked.size.items()]

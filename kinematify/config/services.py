@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from kinematify.config.base import StageConfig, section
 
+ADDRESS = "KINEMATIFY_LLM_URL"
+"""Variable with the address of the language model."""
+
 
 class ServiceConfig(StageConfig):
     """Patience with a service."""

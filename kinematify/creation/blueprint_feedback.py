@@ -16,6 +16,7 @@ _ADVICE = {
     "KV203": 'Make its shapes smaller or larger, or give it another "material": its mass is unlikely.',
     "KV206": 'Its mass is unlikely beside that of the others: check the "size" of its shapes and its "material".',
     "KV225": 'Check "lower" and "upper" of the joint whose "child" it is.',
+    "KV230": 'Check its "pivot" and those of its bars, their "axis", and "mimic", or leave "mimic" out of them.',
     "KV303": 'Place its shapes ("xyz") so that it touches or nearly touches its "parent".',
 }
 """Warnings that a model can act on -> what to change."""

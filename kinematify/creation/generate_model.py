@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from kinematify.config import load_config
+from kinematify.config.services import ADDRESS
 from kinematify.creation.generated_model import GeneratedModel, not_as_asked
-from kinematify.errors import InputError
+from kinematify.errors import InputError, KinematifyError
 from kinematify.generate.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 from kinematify.generate.delivery import BuildResult, deliver
-from kinematify.generate.procedural.blueprint_file import read_blueprint
-from kinematify.generate.reader import read_sentence
 from kinematify.generate.request import read_request, request_of, with_settings
 from kinematify.model.output import PREVIEW_FILE, check_output, write_model_folder
 from kinematify.processes.lock import writing
@@ -42,9 +43,7 @@ _TAKEN_BY: dict[str, tuple[str | None, ...]] = {
     "--time-limit": _SOURCES,
     "--budget": ("llm",),
     "--rounds": ("llm",),
-    "--record": ("llm",),
     "--replay": ("llm",),
-    "--resend": ("llm",),
 }
 """Options -> the sources that take them; None is the library."""
 
@@ -60,14 +59,12 @@ def generate(
     blueprint: str | Path | None = None,
     seed: int | None = None,
     images: Sequence[str | Path] = (),
-    source: Literal["command", "llm"] | None = None,
+    source: Literal["reader", "command", "llm"] | None = None,
     program: str | None = None,
     time_limit: float | None = None,
     budget: float | None = None,
     rounds: int | None = None,
-    record: str | Path | None = None,
     replay: str | Path | None = None,
-    resend: bool = False,
     up: str = "auto",
     scale: float | None = None,
     strict: bool = False,
@@ -90,14 +87,13 @@ def generate(
         blueprint: What to build, parts and joints in YAML or JSON.
         seed: Draws what is not asked for; the usual values if absent.
         images: Photos of the object, for `source`.
-        source: Who makes the object: a program, or a language model; the library of kinds if absent.
+        source: Who makes the object: a program, a language model, or the reader of sentences alone. If absent: the
+            reader, and where it does not read all of a sentence, a language model whose address is set.
         program: Its words, for the source ``command``, with ``{image}``, ``{text}``, ``{seed}`` and ``{out}``.
         time_limit: Of the program or an answer [s].
         budget: Number of tokens after which no round of the language model starts.
         rounds: Most answers of the language model.
-        record: Folder that keeps the answers of the language model.
-        replay: Such a folder to use; nothing is sent.
-        resend: Repeat questions that have no recorded answer.
+        replay: Folder with answers of the language model to use, ``OUT.job``; nothing is sent.
         up: Axis that points up in the parts of a source.
         scale: Metres per unit of them.
         strict: Write nothing unless all is as asked for and every word was read.
@@ -116,11 +112,12 @@ def generate(
     given = {
         "--category": category, "--set": settings, "--request": request, "--blueprint": blueprint,
         "--nearest": nearest, "--infer": inferred, "--seed": seed, "--image": images, "--command": program,
-        "--time-limit": time_limit, "--budget": budget, "--rounds": rounds, "--record": record, "--replay": replay,
-        "--resend": resend,
+        "--time-limit": time_limit, "--budget": budget, "--rounds": rounds, "--replay": replay,
     }  # fmt: skip
-    _check(text, source, {name: value for name, value in given.items() if value not in (None, (), False)})
-    if source is None and strict and text is None:
+    has_model = replay is not None or bool(os.environ.get(ADDRESS, "").strip())
+    may_ask = has_model and source is None and text is not None and not nearest and seed is None
+    _check(text, source, {name: value for name, value in given.items() if value not in (None, (), False)}, may_ask)
+    if source in (None, "reader") and strict and text is None:
         raise InputError("--strict belongs to a sentence. Remove it.")
     if out is None:
         raise InputError("Give the folder of the result: -o FOLDER.")
@@ -131,35 +128,53 @@ def generate(
     )  # fmt: skip
     with writing(place):
         check_output(place, overwrite=overwrite)
-        if source is None:
-            return writer(_built(text, category, settings or {}, request, blueprint, nearest=nearest, seed=seed))
-        from kinematify.creation.other_sources import Order, made_parts, written_blueprint  # noqa: PLC0415 - slow
+        read: BuildResult | InputError | None = None
+        if source in (None, "reader"):
+            try:
+                read = _built(text, category, settings or {}, request, blueprint, nearest=nearest, seed=seed)
+            except InputError as error:
+                if not may_ask:
+                    raise
+                read = error
+            if isinstance(read, BuildResult) and not (may_ask and read.unread):
+                return writer(read)
+        from kinematify.creation.other_sources import made_parts, written_blueprint  # noqa: PLC0415 - slow
+        from kinematify.generate.providers.source import check_prompt  # noqa: PLC0415 - opens pictures
 
-        order = Order(
-            out=place, config=chosen, text=text, images=tuple(map(Path, images)), seed=seed or 0, program=program,
-            time_limit=time_limit, budget=budget, rounds=rounds, record=None if record is None else Path(record),
-            replay=None if replay is None else Path(replay), resend=resend,
-        )  # fmt: skip
-        if source == "llm":
-            answered = written_blueprint(order, report, validation=validation)
-            return writer(answered.made, written=answered)
-        return made_parts(
-            order, report, up=up, scale=scale, overwrite=overwrite, preview=preview, validation=validation
-        )
+        prompt = check_prompt(text, tuple(map(Path, images)), seed=seed or 0)
+        if source == "command":
+            return made_parts(
+                prompt, place, chosen, report, program=program, time_limit=time_limit, up=up, scale=scale,
+                overwrite=overwrite, preview=preview, validation=validation,
+            )  # fmt: skip
+        try:
+            answered = written_blueprint(
+                prompt, place, chosen, report, rounds=rounds, time_limit=time_limit, budget=budget,
+                replay=replay and Path(replay), validation=validation,
+            )  # fmt: skip
+        except KinematifyError as error:
+            if isinstance(read, BuildResult):
+                note = f"The language model was asked for what was not read, in vain: {error}"
+                return writer(replace(read, notes=(*read.notes, note)))
+            raise (error if read is None else type(error)(f"{read} A language model was asked: {error}")) from error
+        if read is not None:
+            why = f"not read: {', '.join(dict.fromkeys(read.unread))}" if isinstance(read, BuildResult) else str(read)
+            note = f"The language model was asked ({why.rstrip('.')})."
+            answered = replace(answered, made=replace(answered.made, notes=(*answered.made.notes, note)))
+        return writer(answered.made, written=answered)
 
 
-def _check(text: str | None, source: str | None, given: Mapping[str, Any]) -> None:
+def _check(text: str | None, source: str | None, given: Mapping[str, Any], may_ask: bool) -> None:
     """Refuse options that do not go together."""
+    maker = None if source == "reader" else source
     for option in given:
         takers = _TAKEN_BY[option]
-        if source not in takers:
+        if maker not in takers and not (may_ask and "llm" in takers and option != "--image"):
             wanted = f"--source {' or '.join(filter(None, takers))}" if takers != (None,) else "no --source"
             if source is None:
                 raise InputError(f"{option} needs {wanted}. Give it as well.")
             raise InputError(f"{option} cannot be combined with --source {source}; it needs {wanted}.")
-    if {"--record", "--replay"} <= given.keys():
-        raise InputError("--record and --replay exclude each other.")
-    if source is not None:
+    if maker is not None:
         return
     ways = ("--category", "--request", "--blueprint")
     if (text is not None) + sum(way in given for way in ways) != 1:
@@ -184,8 +199,12 @@ def _built(
 ) -> BuildResult:
     """Build what is asked for from the library."""
     if blueprint is not None:
+        from kinematify.generate.procedural.blueprint_file import read_blueprint  # noqa: PLC0415 - its schema is slow
+
         return BuildResult(blueprint=read_blueprint(Path(blueprint)))
     if text is not None:
+        from kinematify.generate.reader import read_sentence  # noqa: PLC0415 - its words are slow
+
         return read_sentence(text, nearest=nearest).made(seed=seed)
     values = {"kind": category} if request is None else read_request(Path(request))
     source = "request" if request is None else f"request {request}"

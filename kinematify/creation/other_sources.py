@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinematify.assembly.load import load_assembly
 from kinematify.creation.blueprint_feedback import in_blueprint_words
@@ -16,7 +16,6 @@ from kinematify.generate.providers.command import run_command
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import language_model
-from kinematify.generate.providers.source import check_prompt
 from kinematify.model.output import MODEL_FILE, write_model_folder
 from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.formats.report_files import report_on
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.generate.delivery import BuildResult
     from kinematify.generate.providers.language_model import Written
+    from kinematify.generate.providers.source import Prompt
 
     Progress = Callable[[str, float], None]
 
@@ -36,28 +36,14 @@ _MADE, _INFERRED, _WRITTEN = 0.6, 0.8, 0.85
 """Shares of the time at which these are done."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Order:
-    """Request to a source; `kinematify.generate` says what each field is."""
-
-    out: Path
-    config: Config
-    text: str | None
-    images: tuple[Path, ...]
-    seed: int
-    program: str | None
-    time_limit: float | None
-    budget: float | None
-    rounds: int | None
-    record: Path | None
-    replay: Path | None
-    resend: bool
-
-
 def made_parts(
-    order: Order,
+    prompt: Prompt,
+    out: Path,
+    config: Config,
     progress: Progress,
     *,
+    program: str | None,
+    time_limit: float | None,
     up: str,
     scale: float | None,
     overwrite: bool,
@@ -71,58 +57,64 @@ def made_parts(
         EnvironmentFault: The program failed.
         OutputError: The folder cannot be written.
     """
-    if order.program is None:
+    if program is None:
         raise InputError("--source command needs --command 'program {image} {out}'.")
-    limit = order.time_limit or order.config.sources.command_seconds
-    prompt = check_prompt(order.text, order.images, seed=order.seed)
-    with open_job(job_folder(order.out), "command", prompt.digest({"command": order.program})) as job:
-        parts = run_command(order.program, limit, prompt, job, lambda stage, done: progress(stage, _MADE * done))
+    limit = time_limit or config.sources.command_seconds
+    job = job_folder(out)
+    with open_job(job, "command", prompt.digest({"command": program})):
+        parts = run_command(program, limit, prompt, job, lambda stage, done: progress(stage, _MADE * done))
     progress("reading the parts", _MADE)
-    read = load_assembly(parts.path, config=order.config.assembly, up=up, scale=scale, labels=parts.labels)
-    found = infer(
-        read, config=order.config, progress=lambda stage, done: progress(stage, _MADE + (_INFERRED - _MADE) * done)
-    )
+    read = load_assembly(parts.path, config=config.assembly, up=up, scale=scale, labels=parts.labels)
+    found = infer(read, config=config, progress=lambda stage, done: progress(stage, _MADE + (_INFERRED - _MADE) * done))
     inference = replace(found, provenance=parts.provenance)
     write_model_folder(
-        order.out,
+        out,
         lambda folder: write_inference_files(
             inference, folder, preview=preview,
             progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
         ),
         overwrite=overwrite,
     )  # fmt: skip
-    report = report_on(order.out, progress, _WRITTEN) if validation else None
-    return GeneratedModel(out=order.out, model=inference.model, inference=inference, report=report, parts=parts)
+    report = report_on(out, progress, _WRITTEN) if validation else None
+    return GeneratedModel(out=out, model=inference.model, inference=inference, report=report, parts=parts)
 
 
-def written_blueprint(order: Order, progress: Progress, *, validation: bool) -> Written:
+def written_blueprint(
+    prompt: Prompt,
+    out: Path,
+    config: Config,
+    progress: Progress,
+    *,
+    rounds: int | None,
+    time_limit: float | None,
+    validation: bool,
+    **options: Any,
+) -> Written:
     """Build what a language model answers, and send back what does not hold of it.
 
     Raises:
         InputError: No address is set; see `LanguageModel.write`.
         EnvironmentFault: The service failed.
     """
-    asked = {"rounds": order.rounds, "answer_seconds": order.time_limit}
-    settings = order.config.sources.language_model.model_copy(
+    asked = {"rounds": rounds, "answer_seconds": time_limit}
+    settings = config.sources.language_model.model_copy(
         update={name: value for name, value in asked.items() if value is not None}
     )
-    model = language_model(settings, budget=order.budget, record=order.record, replay=order.replay)
+    model = language_model(settings, **options)
 
     def judged(made: BuildResult) -> Sequence[str]:
         drawn = drawn_findings(made.blueprint) if made.request is None else ()
         if not validation:
             return drawn
         with TemporaryDirectory() as folder:
-            write_blueprint(made.blueprint, Path(folder), order.config)
+            write_blueprint(made.blueprint, Path(folder), config)
             report = validate(Path(folder, MODEL_FILE))
         return [*drawn, *in_blueprint_words(report.counted)]
 
-    prompt = check_prompt(order.text, order.images, seed=0)
-    with open_job(job_folder(order.out), "llm", prompt.digest(model.options())) as job:
-        if order.resend:
-            job.resend()
+    job = job_folder(out)
+    with open_job(job, "llm", prompt.digest(model.options())):
         written = model.write(prompt, job, judged, progress)
-    facts = {"source": "llm", "model": model.model, "text": order.text, "rounds": written.rounds}
+    facts = {"source": "llm", "model": model.model, "text": prompt.text, "rounds": written.rounds}
     blueprint = written.made.blueprint
     named = replace(blueprint, parameters={**blueprint.parameters, **facts})
     return replace(written, made=replace(written.made, blueprint=named))

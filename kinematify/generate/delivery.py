@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.parameter import Parameter, Value
-    from kinematify.generate.request import PartRequest, Request
+    from kinematify.generate.request import PartRequest, Request, Sizes
     from kinematify.robot.arrays import FloatArray
 
 _NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
@@ -38,14 +38,17 @@ _AXES = {"width": 0, "depth": 1, "height": 2}
 _SAME = 0.02  # of a size or a range, by which it may be off
 _ASIDE = 0.02  # of the whole, by which a part is beside its middle
 _UPRIGHT, _LEVEL = 0.95, 0.2  # of the z component of an axis
+_SPIN = 1.45 * math.pi  # [rad] that what spins turns by at least: a knob has three quarters of a turn
 _LARGER = 30.0  # times as large or as small as usual the whole may be: toys
 _ROUND = 0.06  # of a side, by which two sides of what is round differ
 _FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cylinder 0.785
-_SHOWN = 0.5  # of the surface, that has the look of the whole at least
 _TOWARDS = 0.3  # of a way, that leads to a side
 _FRONT = 0.8  # of the width and the height of the whole, that its front has at least
 _DARK = 0.4  # brightness of what is dark at most
-_OWN_LOOK = ("rubber", "glass", "mirror")
+SHOWN = 0.5
+"""Share of the surface that has the look of the whole at least."""
+OWN_LOOK = ("rubber", "glass", "mirror")
+"""Materials that keep their look where the whole is to have another one."""
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
 _PICKED = pairs("left left|right right|front front|back back|rear back|top top|upper top|bottom bottom|lower bottom")
@@ -187,7 +190,7 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
         elif part.count != 0 and not _is_detail(family, noun, made):
             missing.append(noun)
     faults = list(_faults(family, made, request, missing, unmeasured))
-    if shown < _SHOWN:
+    if shown < SHOWN:
         faults.append(f"look of the whole: as asked for on {100 * shown:.0f} % of the surface")
     return BuildResult(
         blueprint=made,
@@ -302,6 +305,13 @@ def fits_size(made: Blueprint, size: str, wanted: float) -> bool:
     return any(_same(wanted, there) for there in _sizes(made, size))
 
 
+def size_faults(made: Blueprint, size: Sizes) -> Iterator[str]:
+    """Return which sizes of the whole, closed, are otherwise than asked for [m], in words."""
+    for name, wanted in size.items():
+        if not fits_size(made, name, wanted):
+            yield f"{name}: {wanted:.3g} m was asked for, it is {_sizes(made, name)[0]:.3g} m"
+
+
 def _sized(made: Blueprint, request: Request) -> Blueprint:
     """Scale the whole where no parameter made a size of it as asked for."""
     factors = [
@@ -324,16 +334,26 @@ def _sizes(made: Blueprint, name: str) -> list[float]:
     The diameter is that of a round part, if the whole is not round; the part has to be half as large.
     """
     shut = closed(made)
-    whole, *others = (
-        np.ptp(bounds, axis=0) for bounds in (shut.assembly.bounds, *(part.bounds for part in shut.parts))
-    )
-    boxes = [whole, others[0], *(box for box in others[1:] if (box > _FRONT * whole)[::2].all())]
-    if name == "diameter" and not _has_round_sides(boxes[0]):
-        turned = [np.ptp(part.bounds, axis=0) for part in shut.parts if _are_round(shut, [part.name])]
-        most = max(turned, key=np.median, default=boxes[0])
+    whole, others = np.ptp(shut.assembly.bounds, axis=0), [np.ptp(part.bounds, axis=0) for part in shut.parts]
+    boxes = [whole, others[0], *(box for box in others if (box > _FRONT * whole)[::2].all())]
+    if name == "diameter":
+        about = [whole] if _has_round_sides(whole) else []
+        turned = [np.ptp(part.bounds, axis=0) for part in shut.parts if not about and _are_round(shut, [part.name])]
+        swept = [np.full(3, _swept(shut, part.name)) for part in shut.parts]
+        most = max((*about, *turned, *swept), key=np.median)
         if 2.0 * np.median(most) > boxes[0].max():
-            boxes = [most]
+            boxes = [most, *boxes[1:]] if about else [most]
     return [_extent(box, name) for box in boxes]
+
+
+def _swept(made: Blueprint, name: str) -> float:
+    """Diameter of the circle that a part fills as it spins [m]: a rotor of five blades is wider than its box."""
+    joint = made.joint_above.get(name)
+    if not joint or not moves_so(joint, "spin"):
+        return 0.0
+    carried = carried_by(name, [other for other in made.joints if other.kind is JointType.FIXED])
+    points = np.concatenate([part.vertices for part in made.parts if part.name in carried])
+    return 2.0 * float(np.linalg.norm(np.cross(points - joint.pivot, joint.axis), axis=1).max())
 
 
 def _has_round_sides(box: FloatArray) -> bool:
@@ -389,11 +409,11 @@ def _painted(made: Blueprint, material: str, color: str) -> tuple[Blueprint, flo
         areas: dict[str, float] = {}
         for part in made.parts:
             look = part.appearance.materials[0].name if part.appearance else ""
-            if not look.endswith(_OWN_LOOK):
+            if not look.endswith(OWN_LOOK):
                 areas[look] = areas.get(look, 0.0) + part.area
         others = {name for name in areas if not (name.startswith(color) and name.endswith(material))}
         share = 1.0 - sum(areas[name] for name in others) / max(sum(areas.values()), 1e-12)
-        if share >= _SHOWN or not again:
+        if share >= SHOWN or not again:
             break
         most = max(others, key=areas.__getitem__)
         alike = [part.name for part in made.parts if part.appearance and part.appearance.materials[0].name == most]
@@ -434,16 +454,19 @@ def opened(blueprint: Blueprint, names: Sequence[str], much: float | tuple[float
     for name in names:
         joint = blueprint.joint_above[name]
         lower, upper = _limits(joint)
-        value = much[0] if isinstance(much, tuple) else much * upper
-        fits = not isinstance(much, tuple) or joint.kind.turns is (much[1] == "rad")
-        if (
-            joint.kind is not JointType.FIXED
-            and fits
-            and math.isfinite(value)
-            and lower - 1e-9 <= value <= upper + 1e-9
-        ):
-            values[name] = value - joint.value
+        wanted = _opening(joint, much)
+        within = min(max(wanted, lower), upper)  # a limit of 1.57 is 90 degrees
+        if joint.kind is not JointType.FIXED and math.isfinite(wanted) and _same(within, wanted):
+            values[name] = within - joint.value
     return blueprint.moved(values)
+
+
+def _opening(joint: BlueprintJoint, much: float | tuple[float, str]) -> float:
+    """Where a joint stands that is open by so much [rad or m]; nan if that is of the other unit, or no end is there."""
+    if isinstance(much, tuple):
+        return much[0] if joint.kind.turns is (much[1] == "rad") else math.nan
+    low, high = _limits(joint)
+    return much * (high if high > 0.0 else low) if much else 0.0
 
 
 def _limits(joint: BlueprintJoint) -> tuple[float, float]:
@@ -472,9 +495,7 @@ def _ranged(blueprint: Blueprint, names: Sequence[str], wanted: tuple[float, flo
 def _faults(
     family: Kind, made: Blueprint, request: Request, missing: Sequence[str], unmeasured: list[str]
 ) -> Iterator[str]:
-    for name, wanted in request.size.items():
-        if not fits_size(made, name, wanted):
-            yield f"{name}: {wanted:.3g} m was asked for, it is {_sizes(made, name)[0]:.3g} m"
+    yield from size_faults(made, request.size)
     rows: list[tuple[int, str, FloatArray]] = []
     meant: list[tuple[str, set[str]]] = []
     for noun, part in request.parts.items():
@@ -543,8 +564,10 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
         yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
     if part.open is not None and not (leading and all(_stands(joint, part.open) for joint in leading)):
-        why = "which one is to be open is not said"
-        yield f"it does not open so far; its range is {_ranges(joints)}" if _is_clear(noun, names) else why
+        wanted = listed(sorted({_shown((_opening(joint, part.open),), joints) for joint in leading}))
+        pose = listed(sorted({_shown((joint.value,), joints) for joint in leading}))
+        why = f"open {wanted} was asked for, it is at {pose}; its range is {_ranges(joints)}"
+        yield why if _is_clear(noun, names) else "which one is to be open is not said"
 
 
 def _serving(made: Blueprint, names: Sequence[str], motion: str) -> Iterator[BlueprintJoint]:
@@ -645,6 +668,7 @@ def _size_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str],
     for size, wanted in part.size.items():
         own = [made.parameters[name] for name in length_names(family, noun, size)]
         sizes = [*own, *(_extent(box, size) for box in extents)]
+        sizes += [_swept(made, name) for name in names if size == "diameter"]
         if not any(_same(wanted, value) for value in sizes):
             yield f"{size}: {wanted:.3g} m was asked for, it is {sizes[0]:.3g} m"
 
@@ -700,12 +724,18 @@ def moves_so(joint: BlueprintJoint, motion: str) -> bool:
         "move": joint.kind is not JointType.FIXED,
         "hinge": joint.kind.turns,
         "slide": joint.kind is JointType.PRISMATIC,
-        "spin": joint.kind is JointType.CONTINUOUS or (joint.kind.turns and joint.upper - joint.lower > 1.9 * math.pi),
+        "spin": joint.kind is JointType.CONTINUOUS or (joint.kind.turns and joint.upper - joint.lower > _SPIN),
         "pan": joint.kind.turns and upright > _UPRIGHT,
         "tilt": joint.kind.turns and upright < _LEVEL,
         "lift": joint.kind is JointType.PRISMATIC and upright > 1.0 - _LEVEL,
         "fixed": joint.kind is JointType.FIXED,
     }[motion]
+
+
+def motion_of(joint: BlueprintJoint) -> str:
+    """Return how a joint moves and how far from its closed pose, in words; empty where it does not."""
+    how = next((how for how in words_of("spin lift slide pan tilt hinge") if moves_so(joint, how)), "")
+    return f" {how} {_ranges([joint])}" if how else ""
 
 
 def _goes(joint: BlueprintJoint, wanted: tuple[float, float]) -> bool:
@@ -717,19 +747,16 @@ def _goes(joint: BlueprintJoint, wanted: tuple[float, float]) -> bool:
 
 
 def _stands(joint: BlueprintJoint, much: float | tuple[float, str]) -> bool:
-    if isinstance(much, tuple):
-        return joint.kind.turns is (much[1] == "rad") and math.isclose(joint.value, much[0], rel_tol=1e-6, abs_tol=1e-9)
-    upper = _limits(joint)[1]
-    return (much == 0.0 and joint.value == 0.0) or (math.isfinite(upper) and math.isclose(joint.value, much * upper))
+    return math.isclose(joint.value, _opening(joint, much), rel_tol=_SAME, abs_tol=1e-9)
 
 
 def _ranges(joints: Sequence[BlueprintJoint]) -> str:
     return listed(sorted({_shown(_limits(joint), [joint]) for joint in joints} or {"none"}))
 
 
-def _shown(ends: tuple[float, float], joints: Sequence[BlueprintJoint]) -> str:
+def _shown(ends: Sequence[float], joints: Sequence[BlueprintJoint]) -> str:
     if not all(map(math.isfinite, ends)):
         return "without end"
     if joints and not joints[0].kind.turns:
-        return f"{ends[0]:.3g} to {ends[1]:.3g} m"
-    return f"{math.degrees(ends[0]):.0f} to {math.degrees(ends[1]):.0f} deg"
+        return f"{' to '.join(f'{end:.3g}' for end in ends)} m"
+    return f"{' to '.join(f'{math.degrees(end):.0f}' for end in ends)} deg"

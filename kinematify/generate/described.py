@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from kinematify.generate.library.kind import Kind, put_together
+from kinematify.generate.library.kind import Kind
 from kinematify.generate.procedural.blueprint_file import (
     MIRRORS,
     BlueprintDescription,
@@ -25,8 +24,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.generate.procedural.blueprint import BlueprintJoint
+    from kinematify.generate.procedural.builder import ObjectBuilder
     from kinematify.generate.procedural.parameter import Value
-    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
 
 
@@ -81,14 +80,13 @@ class CountParameters(BaseModel):
     counts: dict[str, dict[str, Any]] = Field({})
     """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
 
-    def as_kind(self, material: str, make: Callable[..., None]) -> Kind:
+    def as_kind(self, make: Callable[..., None]) -> Kind:
         """The object as a kind that leaves nothing to choose but its counts and what every kind does."""
         return Kind(
             name=self.category,
             title=self.title or self.words[0],
             words=self.words,
             parameters=details_of(self.details) + tuple(_repeated(word, said) for word, said in self.counts.items()),
-            material=material,
             walls=self.walls,
             part_words=self.part_words,
             make=make,
@@ -113,8 +111,8 @@ class ObjectDescription(CountParameters, BlueprintDescription):
                 self._refuse_unknown_count(copy.repeated)
         return self
 
-    def make(self, workshop: Workshop, values: Mapping[str, Value], _: np.random.Generator | None) -> None:
-        """Add the object to a workshop; see `Kind.make`."""
+    def make(self, builder: ObjectBuilder, values: Mapping[str, Value]) -> None:
+        """Add the object to a builder; see `Kind.make`."""
         counts = {word: int(values[f"{word}s"]) for word in self.counts}
         looks = {part.name: (part.material, part.color) for part in self.parts}
         solids = {part.name: part.solid(counts) for part in self.parts}
@@ -131,7 +129,11 @@ class ObjectDescription(CountParameters, BlueprintDescription):
                     solid, joint = given[name]
                     looks[names[name]], solids[names[name]] = looks[name], solid.transform(transform)
                     joints[names[name]] = _joint_elsewhere(joint, names, transform)
-        put_together(workshop, solids, looks, list(joints.values()), values)
+        for name, solid in solids.items():
+            builder.part(name, solid, look=looks[name])
+        for joint in joints.values():
+            builder.add_joint(joint)
+        builder.arrange(str(values["material"]), str(values["color"]), float(values["open"]))
 
 
 def _repeated(word: str, said: Mapping[str, Any]) -> Parameter:
@@ -187,5 +189,4 @@ def kind_in(file: Path) -> Kind:
         return ObjectDescription.model_validate({"name": file.stem, "category": file.stem, **table})
 
     said = CountParameters.model_validate({"category": file.stem, **parse_table(text.partition("\nparts:\n")[0])})
-    material = re.search(r"\nparts:\n- name: .*\n  material: (\w+)", text)
-    return said.as_kind(material[1] if material else "plastic", lambda *given: described().make(*given))
+    return said.as_kind(lambda *given: described().make(*given))

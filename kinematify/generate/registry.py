@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.library.kind import KINDS, Kind, built
+from kinematify.generate.library.kind import KINDS, MODELING, Kind, checked
+from kinematify.generate.procedural.builder import CAREFUL, ObjectBuilder
 from kinematify.generate.procedural.parameter import phrases
+from kinematify.generate.procedural.solids import SEGMENTS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.generate.procedural.blueprint import Blueprint
-    from kinematify.generate.procedural.parameter import Value
+    from kinematify.generate.procedural.parameter import Parameter, Value
 
 FAMILIES = phrases(
     "cabinet, serial_arm, scara, gantry, gripper, hand, quadruped, snake, oven, fridge, table, microwave, "
@@ -30,23 +35,69 @@ _FOLDER = Path(__file__).with_name("kinds")
 
 
 def build(
-    kind: str | Kind, parameters: Mapping[str, Value] | None = None, *, seed: int | None = None, name: str = ""
+    kind: str | Kind, given: Mapping[str, Value] | None = None, *, seed: int | None = None, name: str = ""
 ) -> Blueprint:
     """Build an object of a kind.
 
     Args:
         kind: Its name, or the kind.
-        parameters: As `built` takes them; texts of numbers are read.
+        given: Parameter -> value in metres, radians, counts or words; others take their default, or what the seed
+            draws from their usual range.
         seed: Draws what is not given; none takes the defaults.
         name: Of the object; the kind's if empty.
 
     Raises:
-        InputError: There is no such kind, or a parameter is unknown or out of its bounds.
+        InputError: There is no such kind, or a parameter is unknown or out of its bounds; the message names the nearest
+            or the bounds.
     """
     found = kind_named(kind) if isinstance(kind, str) else kind
     if found is None:
         raise InputError(f"There is no kind {kind!r}. `kinematify generate --list` shows all.")
-    return built(found, parameters or {}, seed=seed, name=name)
+    rng, kind = np.random.default_rng(seed), found
+    asked = {key: checked(kind, key, value) for key, value in (given or {}).items()}
+    values = {p.name: _drawn(p, rng) if seed is not None and p.drawn else p.default for p in kind.all_parameters}
+    values.update(asked)
+    look = (str(values["material"]) or kind.carved_from, str(values["color"]) or None)
+    builder = ObjectBuilder(
+        kind.name,
+        replace(CAREFUL, **{"gap": float(values["clearance"]), **_differences(kind, values)}),
+        None if seed is None else rng,
+        carves=bool(kind.carved_from),
+        look=look if kind.carved_from else ("plastic", None),
+        handles=(str(values["handle_material"]), str(values["handle_color"]) or None),
+    )
+    kind.make(builder, values)
+    if not builder.joints:
+        counts = ", ".join(p.name for p in kind.parameters if isinstance(p.default, int))
+        raise InputError(f"Nothing of this {kind.title} would move. Ask for one of {counts} at least.")
+    return builder.finish(
+        name,
+        {"seed": seed, **values},
+        mesh_style=str(values["style"]),
+        clearance=float(values["clearance"]),
+        seed=seed,
+        walls=kind.walls,
+    )
+
+
+def _differences(kind: Kind, values: Mapping[str, Value]) -> Mapping[str, Any]:
+    """Its modelling style differs from the careful way in these."""
+    if "modeling" in values:
+        return MODELING[str(values["modeling"])]
+    return {"sides": SEGMENTS, "knob": "pointer"} if kind.carved_from else {"sides": SEGMENTS}
+
+
+def _drawn(parameter: Parameter, rng: np.random.Generator) -> Value:
+    """Draw a value; always the same number of draws, so that giving one parameter does not change the others."""
+    share = float(rng.random())
+    if parameter.choices and parameter.name not in ("material", "color"):
+        return parameter.choices[int(share * len(parameter.choices))]
+    if parameter.usual is None:
+        return parameter.default
+    low, high = parameter.usual
+    if isinstance(parameter.default, int):
+        return int(low) + int(share * (int(high) - int(low) + 1))
+    return low + share * (high - low)
 
 
 @cache

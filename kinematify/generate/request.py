@@ -72,10 +72,14 @@ def _pair(value: Any) -> Any:
 
 def _opening(value: Any) -> Any:
     words = {"closed": 0.0, "half": 0.5, "half open": 0.5, "open": 1.0}
+    number, unit = value, ""
     if isinstance(value, str):
         number, unit = (words[value], "") if value in words else quantity(value)
-        return (number, unit) if unit else number
-    return value
+    if isinstance(number, dict) or (not unit and isinstance(number, float | int) and not 0.0 <= number <= 1.0):
+        raise ValueError(
+            f"{value} is no opening: a plain number is a share of the way, from 0 to 1; write 45 deg, 1.57 rad or 12 cm"
+        )
+    return (number, unit) if unit else number
 
 
 def _name_among(known: Mapping[str, str], what: str) -> BeforeValidator:
@@ -102,7 +106,11 @@ class PartRequest(_Fields):
 
     count: int | None = Field(None, ge=0, le=1_000_000)
     at_least: int | None = Field(None, ge=1, le=60)
-    size: Sizes = Field({}, description="[m], or text with a unit: 80 cm.")
+    size: Sizes = Field(
+        {},
+        description="[m], or text with a unit: 80 cm. Of the box around each part, closed: width along x, depth along "
+        "y, height along z; length and thickness are its longest and shortest side; diameter of what is round.",
+    )
     color: Color = Field(None, description=f"One of {', '.join(COLORS)}.")
     material: Material = Field(None, description=f"One of {', '.join(MATERIALS)}.")
     side: Literal["left", "right", "front", "back", "top", "bottom"] | None = Field(
@@ -111,8 +119,8 @@ class PartRequest(_Fields):
     row: int | None = Field(None, ge=1, description="From the top: all of row 1 is above all of row 2.")
     motion: Literal["move", "hinge", "slide", "spin", "pan", "tilt", "lift", "fixed"] | None = Field(
         None,
-        description="How they move: at all, by turning, sliding, turning without end, turning about an upright or a "
-        "level axis, sliding upwards, or not.",
+        description="How they move: at all (move), turning about any axis (hinge), an upright (pan) or a level one "
+        "(tilt), by three quarters of a turn or without end (spin), sliding any way (slide) or upwards (lift), not.",
     )
     towards: Literal["left", "right", "front", "back", "top", "bottom", "out", "in"] | None = Field(
         None, description="Where they go as they open."
@@ -121,10 +129,12 @@ class PartRequest(_Fields):
         None, description="Side of the part on which its hinge is."
     )
     range: Annotated[tuple[float, float] | None, BeforeValidator(_pair)] = Field(
-        None, description="Of the joint [rad or m], signed, from the closed pose; or text: -30 to 90 deg."
+        None,
+        description="Of the joint, signed, from the closed pose: text as -30 to 90 deg, 0 to 30 cm, or two numbers.",
     )
     open: Annotated[float | tuple[float, Literal["m", "rad"]] | None, BeforeValidator(_opening)] = Field(
-        None, description="How far they stand open: a share in [0, 1], or text: 30 deg, 12 cm."
+        None,
+        description="How far they stand open: text as 45 deg, 12 cm; a plain number is a share of the way, 0 to 1.",
     )
 
     @model_validator(mode="before")
@@ -147,7 +157,7 @@ class Request(_Fields):
 
     kind: str = Field(description="Name of the kind; `kinematify generate --list` shows all.")
     parameters: dict[str, float | int | str] = Field({}, description="Of the kind: lengths [m], angles [rad], counts.")
-    size: Sizes = Field({}, description="Of the whole, closed [m], or text with a unit: 80 cm.")
+    size: Sizes = Field({}, description="Of the whole, closed, with all that sticks out; as of a part.")
     parts: dict[str, PartRequest] = Field(
         {}, description="Name of parts -> what is asked of them; 'left door' or 'second drawer' means one of them."
     )

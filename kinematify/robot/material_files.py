@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,8 +43,14 @@ def write_texture(path: Path, texture: Texture) -> None:
     Raises:
         OSError: It cannot be written.
     """
-    opaque = bool((texture.pixels[..., 3] == _OPAQUE).all())
-    Image.fromarray(texture.pixels[..., :3] if opaque else texture.pixels).save(path)
+    path.write_bytes(_png(texture))
+
+
+@lru_cache(maxsize=4)  # links of one object share theirs
+def _png(texture: Texture) -> bytes:
+    opaque, written = bool((texture.pixels[..., 3] == _OPAQUE).all()), io.BytesIO()
+    Image.fromarray(texture.pixels[..., :3] if opaque else texture.pixels).save(written, "PNG")
+    return written.getvalue()
 
 
 def read_mtl(path: Path) -> tuple[dict[str, Material], tuple[str, ...]]:

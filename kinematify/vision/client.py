@@ -11,11 +11,11 @@ import io
 import json
 import os
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from kinematify.errors import EnvironmentFault, InputError
+from kinematify.errors import EnvironmentFault, InputError, OutputError
 from kinematify.geometry.cut_cache import cache_folder
 from kinematify.vision.piece_question import PieceAnswer
 
@@ -71,6 +71,8 @@ class ChatOracle:
             return list(pool.map(lambda question: self._answer(service, question), questions))
 
     def _answer(self, service: Service, question: PieceQuestion) -> PieceAnswer:
+        from kinematify.generate.providers.service import said as read_answer  # noqa: PLC0415
+
         request = self._request(question)
         digest = hashlib.sha256(json.dumps([self.url, request], sort_keys=True).encode()).hexdigest()
         path = self.cache / f"{digest}.json"
@@ -81,8 +83,8 @@ class ChatOracle:
             return PieceAnswer(fault=self.fault)
         if said is None:
             try:
-                said = _said(service.ask("/chat/completions", json=request))
-                self.spent += said["tokens"]
+                text, tokens = read_answer(service.ask("/chat/completions", json=request))
+                said, self.spent = {"text": text, "tokens": tokens}, self.spent + tokens
             except (EnvironmentFault, InputError) as error:
                 self.fault = str(error)
                 return PieceAnswer(fault=self.fault)
@@ -127,16 +129,6 @@ def oracle_of(choice: str, config: VisionConfig) -> ChatOracle | None:
     return ChatOracle(url.rstrip("/"), model, key, config, cache_folder().parent / "vlm")
 
 
-def _said(answer: Any) -> dict[str, Any]:
-    """Text and tokens of a chat answer, which may be anything."""
-    try:
-        text = answer["choices"][0]["message"].get("content") or ""
-        tokens = (answer.get("usage") or {}).get("total_tokens") or 0
-        return {"text": str(text), "tokens": int(tokens)}
-    except (AttributeError, KeyError, IndexError, TypeError, ValueError):
-        return {"text": "", "tokens": 0}
-
-
 def read_kept(path: Path) -> dict[str, Any] | None:
     """JSON values from the cache; None where there are none, or they were cut off."""
     try:
@@ -148,10 +140,7 @@ def read_kept(path: Path) -> dict[str, Any] | None:
 
 def write_kept(path: Path, said: dict[str, Any]) -> None:
     """Keep JSON values in the cache, whole or not at all; without a cache the same is paid for again."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partly = path.with_suffix(f".{os.getpid()}")
-        partly.write_text(json.dumps(said), encoding="utf-8")
-        partly.replace(path)
-    except OSError:
-        path.with_suffix(f".{os.getpid()}").unlink(missing_ok=True)
+    from kinematify.generate.providers.job import keep  # noqa: PLC0415 - most calls keep nothing
+
+    with suppress(OutputError):
+        keep(path, said)

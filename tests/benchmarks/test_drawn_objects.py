@@ -7,7 +7,7 @@ import pytest
 from manifold3d import Manifold, Mesh64, OpType
 
 from benchmarks.fit.drawn import DRAWN, drawn_object
-from kinematify.generate.library.builder import CAREFUL
+from kinematify.generate.procedural.builder import CAREFUL
 from kinematify.robot.joint_type import JointType
 
 _MORE = 1e-3

@@ -120,7 +120,7 @@ def test_copies_take_along_what_they_carry() -> None:
             "copies": [{"like": "caster_1", "mirrored": "x"}, {"like": "caster_1", "repeated": {"count": 2}}],
         }
     )
-    made = build(described.as_kind("plastic", described.make))
+    made = build(described.as_kind(described.make))
     above = made.joint_above
     assert set(above) == {f"caster_{k}{part}" for k in (1, 2, 3) for part in ("", "_wheel")}
     assert above["caster_2_wheel"].parent == "caster_2"

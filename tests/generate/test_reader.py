@@ -109,7 +109,7 @@ def test_what_was_asked_for_and_is_otherwise_is_listed():
         ("a two-door wardrobe with a drawer below each door", ("below each",)),
         ("an office swivel chair, 12 cm", ("12 cm",)),
         ("a robot vacuum, round, 33 cm across", ()),
-        ("a sectional garage door, 2.4 m wide by 2.1 m high", ()),
+        ("a garage door, 2.4 m wide by 2.1 m high", ()),
         ("a filing cabinet, like they have in offices", ()),
         ("a laptop like the ones in offices with two screens", ("two screens",)),
         ("a desk with an oak base", ("oak base",)),

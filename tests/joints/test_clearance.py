@@ -62,7 +62,9 @@ def test_thick_discs_in_a_row_are_no_buttons_for_that() -> None:
     """Knobs of ovens and hobs stand in rows as well; flat or square caps are keys."""
     panel = box((-0.3, 0, 0), (0.3, 0.3, 0.1))
     knobs = {f"knob_{k}": cylinder(0.02, (x, -0.02, 0.05), (x, 0, 0.05)) for k, x in enumerate((-0.15, 0, 0.15))}
-    keys = {f"key_{k}": box((x - 0.02, -0.005, 0.02), (x + 0.02, 0, 0.08)) for k, x in enumerate((-0.22, -0.075, 0.075))}
+    keys = {
+        f"key_{k}": box((x - 0.02, -0.005, 0.02), (x + 0.02, 0, 0.08)) for k, x in enumerate((-0.22, -0.075, 0.075))
+    }
     lines = [turning("panel", name, (0, 1, 0), (0, 0, 0.05), (-1.0, 1.0)) for name in (*knobs, *keys)]
     found = infer_joints(known_object("panel", {"panel": panel, **knobs, **keys}, *lines))
     assert all(found[name].kind.turns and found[name].evidence["row"] == 0.0 for name in knobs)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import seam
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind(

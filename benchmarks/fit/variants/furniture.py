@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import case, legs, lever
 from kinematify.generate.library.panels import carcass, drawer, leaf, seam
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind(

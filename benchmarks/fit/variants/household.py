@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, kind, length, yes
 from kinematify.generate.library.mechanisms import bail, button, case, crank, knob, lever, rotor
 from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, slab
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind("parametric pedal bin", like="trash_can", radius=length(0.12, 0.2), height=length(0.3, 0.65))

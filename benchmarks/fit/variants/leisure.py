@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import bail, button, case, caster, crank, knob, legs, lever, plunger, wheel
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, slab, vector
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind("parametric gyroscope", like="gyroscope", radius=length(0.03, 0.3))

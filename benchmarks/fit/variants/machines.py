@@ -14,7 +14,7 @@ from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, slab, vector
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind("parametric toolbox", like="box", width=length(0.35, 0.6), depth=length(0.18, 0.3), height=length(0.15, 0.3))

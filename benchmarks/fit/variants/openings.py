@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.kinds.openings import surround
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import knob, lever
 from kinematify.generate.library.panels import filled, grip, leaf, seam
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab, vector
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
     from kinematify.generate.procedural.solids import Point
 
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from benchmarks.fit.variants.openings import pane
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import case, caster, legs, wheel
 from kinematify.generate.library.panels import carcass, drawer, grip, leaf, seam
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, box, prism, slab
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 def pinned(

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.kinds.vehicles import axles
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import arm, caster, rotor, wheel
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind("parametric tractor", like="tractor", radius=length(0.6, 0.9), q=length(0.3, 0.45))

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import button, in_fork
 from kinematify.generate.library.panels import leaf, seam
+from kinematify.generate.procedural.builder import spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, slab, vector
 
 if TYPE_CHECKING:
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
 
 
 @kind("fork barrow", like="hand_truck", width=length(0.4, 0.7), depth=length(0.6, 1.0), radius=length(0.1, 0.22))

@@ -10,10 +10,10 @@ import numpy as np
 from manifold3d import Manifold
 
 from kinematify.generate.library.kind import angle, choice, kind, length, whole
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, at, barrel, fork, stub
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, ring, rod, slab, union, vector
-from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         "notebook, notebook computer, laptop computer, portable computer, macbook, chromebook, netbook, "
         "ultrabook, toy laptop"
     ),
-    material="metal",
+    carved_from="metal",
     part_words={"screen": "lid, display"},
     width=length(0.2, 0.5, default=0.34, usual=(0.28, 0.4), help="Outer width."),
     depth=length(0.15, 0.4, default=0.24, usual=(0.2, 0.28), help="Outer depth."),
@@ -34,7 +34,14 @@ if TYPE_CHECKING:
     knuckles=whole(2, 5, usual=(3, 5), help="Of each of the two hinges."),
 )
 def laptop(
-    w: Workshop, width: float, depth: float, base: float, screen: float, knuckles: int, open: float, clearance: float
+    w: ObjectBuilder,
+    width: float,
+    depth: float,
+    base: float,
+    screen: float,
+    knuckles: int,
+    open: float,
+    clearance: float,
 ) -> None:
     """Laptops: a screen that is hinged at the back edge of a slab with keys."""
     radius = 0.005  # of the hinges [m]
@@ -49,14 +56,14 @@ def laptop(
     pad = slab(0.18 * width, (0.06 * back, 0.3 * back), (base - 0.0005, base + 0.01))
     lid = slab(0.5 * width, (0, back), (level, level + screen))
     hollow = slab(0.46 * width, (0.04 * back, 0.96 * back), (level - 1.0, level + 0.0025))
-    w.body("base", sheet - pad, keys)
-    w.body("screen", lid - hollow)
+    w.part("base", sheet - pad, keys)
+    w.part("screen", lid - hollow)
     edge = BackEdge(y=back, level=level, below=base, above=screen, clearance=clearance)
     places = (-0.32 * width, 0.32 * width)
     pivot = add_barrels(
         w, "screen", parent="base", edge=edge, places=places, length=0.16 * width, radius=radius, knuckles=knuckles
     )
-    w.turns("screen", "base", (-1, 0, 0), pivot, (0.0, opens), rest=open)
+    w.hinge("screen", "base", (-1, 0, 0), pivot, opens, rest=open * opens)
     w.settle()
 
 
@@ -72,8 +79,9 @@ def laptop(
     foot=choice(
         {"fixed": "", "turning": "rotating foot, turning foot, swivel"}, help="Whether the meridian turns on the foot."
     ),
+    carved_from="plastic",
 )
-def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, foot: str, clearance: float) -> None:
+def globe(w: ObjectBuilder, diameter: float, post: float, tilt: float, mount: str, foot: str, clearance: float) -> None:
     """Globes: a ball that turns on an inclined axis in a meridian, which may turn on its foot."""
     the_foot = 0.014  # thickness of the foot [m]
     latitudes = (-40.0, 0.0, 40.0)  # of the raised lines [deg]
@@ -83,16 +91,16 @@ def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, fo
         radius = 0.5 * diameter
         wide = 3.0 * arc
         start = 1.5 * the_foot
-        w.body("base", cylinder(0.62 * radius, 0, the_foot, segments=64), cylinder(0.5 * radius, 0, start, segments=64))
+        w.part("base", cylinder(0.62 * radius, 0, the_foot, segments=64), cylinder(0.5 * radius, 0, start, segments=64))
         if foot == "fixed":
-            w.add("base", cylinder(0.5 * wide, the_foot, low))
+            w.part("base", cylinder(0.5 * wide, the_foot, low))
             found = "base"
         else:
             boss, hole, rotor = stub((0, 0, start + 0.01), (0, 0, 1), wide, clearance, length=0.012)
-            w.add("base", boss)
+            w.part("base", boss)
             w.cut("base", hole)
-            w.body("meridian", rotor, cylinder(0.5 * wide, start + 0.01 + clearance, low))
-            w.turns("meridian", "base", (0, 0, 1), (0, 0, start + 0.01))
+            w.part("meridian", rotor, cylinder(0.5 * wide, start + 0.01 + clearance, low))
+            w.spin("meridian", "base", (0, 0, 1), (0, 0, start + 0.01))
             found = "meridian"
         return found
 
@@ -117,14 +125,14 @@ def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, fo
     wide = pin + clearance + 0.003
     bosses = [cylinder(wide, end, copysign(reach + arc + 0.002, end)) for end in ends]
     hole = bore(pin, clearance, (0, 0, -2.0 * reach), (0, 0, 2.0 * reach))
-    w.add(carrier, tilted(union(meridian, *bosses) - hole))
+    w.part(carrier, tilted(union(meridian, *bosses) - hole))
     lines = [latitude(radius, radians(angle)) for angle in latitudes]
     hubs = [cylinder(wide, 0.9 * end, copysign(1.02 * radius, end)) for end in ends]
     tips = reach + arc + 0.004
     shaft = cylinder(pin, -tips, tips)
-    w.body("ball", tilted(ball(radius, (0, 0, 0), segments=64), *lines, *hubs, shaft), color="blue")
+    w.part("ball", tilted(ball(radius, (0, 0, 0), segments=64), *lines, *hubs, shaft), look="blue")
     axis = (sin(tilt), 0, cos(tilt))
-    w.turns("ball", carrier, axis, (0, 0, level))
+    w.spin("ball", carrier, axis, (0, 0, level))
     w.settle()
 
 
@@ -133,13 +141,15 @@ def globe(w: Workshop, diameter: float, post: float, tilt: float, mount: str, fo
         "parasol, sunshade, patio umbrella, garden umbrella, beach umbrella, sun umbrella, market umbrella, "
         "rain umbrella, pocket umbrella, golf umbrella, cocktail umbrella, cafe umbrella"
     ),
-    material="metal",
+    carved_from="metal",
     height=length(0.5, 1.5, default=0.85, usual=(0.7, 1.0), help="Over all."),
     reach=length(0.2, 1.0, default=0.55, usual=(0.4, 0.65), help="Of a slat."),
     ribs=whole(4, 12, usual=(6, 10), help="Around the shaft.", words="rib, slat"),
     handle=choice({"crook": "crooked, hooked, curved", "straight": ""}, help="The part under it."),
 )
-def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, open: float, clearance: float) -> None:
+def umbrella(
+    w: ObjectBuilder, height: float, reach: float, ribs: int, handle: str, open: float, clearance: float
+) -> None:
     """Umbrellas that stand on their handle: slats that spread from a crown, and a runner on the shaft."""
     knuckle = 0.003  # radius of a slat's hinge [m]
     hinge = 0.009  # length of a slat's hinge [m]
@@ -182,7 +192,7 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
     crown = cylinder(circle + 1.2 * knuckle, above, above + 0.006)
     point = rod(0.6 * the_shaft, top, top + 0.05 - 0.6 * the_shaft)
     shaft = cylinder(the_shaft, 0.5 * grip, above + 0.012, segments=32)
-    w.body("shaft", handle_of(), shaft, point, crown)
+    w.part("shaft", handle_of(), shaft, point, crown)
     # A sleeve that is pushed up the shaft.
     start = grip + 0.03
     tall = 0.04
@@ -190,21 +200,21 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
     gap_2 = min(clearance, 0.002)
     rib = slab(0.0015, (0, the_shaft + 0.003), (start - 0.01, top - 0.01))
     groove = slab(0.0015 + gap_2, (0, the_shaft + 0.003 + gap_2), (0, 2.0 * top))
-    w.add("shaft", rib)
-    w.body("runner", sleeve - bore(the_shaft, gap_2, (0, 0, 0), (0, 0, 2.0 * top)) - groove, material="plastic")
+    w.part("shaft", rib)
+    w.part("runner", sleeve - bore(the_shaft, gap_2, (0, 0, 0), (0, 0, 2.0 * top)) - groove, look="plastic")
     way = 0.9 * (top - 0.02 - start - tall)
-    w.slides("runner", "shaft", (0, 0, 1), (0, 0, start), (0.0, way), rest=open)
+    w.slide("runner", "shaft", (0, 0, 1), way, pivot=(0, 0, start), rest=open * way)
     forked, tongue = [half.rotate((180, 0, 0)) for half in fork(hinge, knuckle, gap, 3.0 * knuckle)]
     slat = tongue + slat_of(circle, top - grip - 0.02)
     for k in range(ribs):
         angle = 2.0 * pi * k / ribs
         name = f"rib_{k + 1}"
         its_degrees = degrees(angle)
-        w.add("shaft", forked.translate((0, -circle, top)).rotate((0, 0, its_degrees)))
-        w.body(name, slat.translate((0, -circle, top)).rotate((0, 0, its_degrees)))
+        w.part("shaft", forked.translate((0, -circle, top)).rotate((0, 0, its_degrees)))
+        w.part(name, slat.translate((0, -circle, top)).rotate((0, 0, its_degrees)))
         axis = (-cos(angle), -sin(angle), 0)
         pivot = (circle * sin(angle), -circle * cos(angle), top)
-        w.turns(name, "shaft", axis, pivot, (0.0, opens), rest=open)
+        w.hinge(name, "shaft", axis, pivot, opens, rest=open * opens)
     w.settle()
 
 
@@ -219,9 +229,10 @@ def umbrella(w: Workshop, height: float, reach: float, ribs: int, handle: str, o
     bridge=length(0.014, 0.024, default=0.018, usual=(0.015, 0.022), help="Its width."),
     temple=length(0.09, 0.16, default=0.135, usual=(0.125, 0.148), help="Length of a temple."),
     shape=choice({"rectangular": "square", "round": "circular"}, help="Of the lenses.", words="lens, frame"),
+    carved_from="plastic",
 )
 def eyeglasses(
-    w: Workshop, width: float, lens: float, bridge: float, temple: float, shape: str, open: float, clearance: float
+    w: ObjectBuilder, width: float, lens: float, bridge: float, temple: float, shape: str, open: float, clearance: float
 ) -> None:
     """Eyeglasses: a frame with two lenses that looks along -y, and temples that fold in behind it.
 
@@ -307,16 +318,16 @@ def eyeglasses(
         return at(pivot - rotation @ pivot, rotation)
 
     gap = min(clearance, 0.3 * knuckle)
-    w.body("frame", frame())
+    w.part("frame", frame())
     for k, side in enumerate((-1.0, 1.0)):
         inner = 0.5 * width - thick
         off_face = knuckle + gap + 0.5 * lean * hinge
         pivot = vector(side * (inner - off_face), the_back, level)
         of_frame, of_temple = hinge_of(pivot, side, off_face, gap)
-        w.add("frame", end_of(side, gap), of_frame)
+        w.part("frame", end_of(side, gap), of_frame)
         axis = side * vector(lean, 0.0, -1.0) / hypot(lean, 1.0)
         opened = temple_of(side, gap) + of_temple
         name = f"temple_{k + 1}"
-        w.body(name, opened.transform(about(axis, pivot, -0.5 * pi)))
-        w.turns(name, "frame", axis, pivot, (0.0, 0.5 * pi), rest=open)
+        w.part(name, opened.transform(about(axis, pivot, -0.5 * pi)))
+        w.hinge(name, "frame", axis, pivot, 0.5 * pi, rest=open * (0.5 * pi))
     w.settle()

@@ -9,15 +9,14 @@ from typing import Any
 
 from manifold3d import Manifold
 
-from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import button, knob, lever
 from kinematify.generate.library.panels import grip, leaf
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.pieces.fronts import Field
 from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, rod, slab, union
-from kinematify.generate.procedural.workshop import Workshop
 
 _STOP = 0.012  # how far the strip that a leaf lies against reaches into the opening [m]
 _GROOVE = 0.012  # depth of the grooves that leaves run in [m]
@@ -92,7 +91,7 @@ class Grooves:
 
 
 def add_sliding(
-    workshop: Workshop,
+    w: ObjectBuilder,
     name: str,
     parent: str,
     tracks: Grooves,
@@ -104,7 +103,7 @@ def add_sliding(
     """Add `count` leaves, each in its own track, that run sideways; beside a single one stands a fixed pane.
 
     Args:
-        workshop: Where they are added.
+        w: Where they are added.
         name: Of all, without their numbers.
         parent: The frame, without the opening; it is cut here.
         tracks: As many as leaves, two at least.
@@ -116,21 +115,21 @@ def add_sliding(
     shares = max(count, 2)
     pitch = (opening.right - opening.left) / shares
     overlap = min(0.03, 0.1 * pitch)
-    workshop.cut(parent, tracks.cut())
+    w.cut(parent, tracks.cut())
     for k in range(shares):
         left = opening.left + k * pitch + (clearance if k == 0 else -0.5 * overlap)
         right = opening.left + (k + 1) * pitch + (-clearance if k == shares - 1 else 0.5 * overlap)
         face = Field(left=left, right=right, bottom=opening.bottom, top=opening.top)
         if k >= count:
             whole = tracks.fixed(k, left, opening.right + 1e-3)
-            workshop.add(parent, finish(whole, face, tracks.front(k)))
+            w.part(parent, finish(whole, face, tracks.front(k)))
             continue
-        workshop.body(f"{name}_{k + 1}", finish(tracks.slab(k, left, right), face, tracks.front(k)))
+        w.part(f"{name}_{k + 1}", finish(tracks.slab(k, left, right), face, tracks.front(k)))
         to_right = opening.right - clearance - right
         to_left = left - opening.left - clearance
         sign, room = (1, to_right) if to_right >= to_left else (-1, to_left)
         place = (face.middle[0], tracks.front(k), face.middle[1])
-        workshop.slides(f"{name}_{k + 1}", parent, (sign, 0, 0), place, (0.0, 0.95 * room), rest=rest)
+        w.slide(f"{name}_{k + 1}", parent, (sign, 0, 0), 0.95 * room, pivot=place, rest=rest * (0.95 * room))
 
 
 def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int, columns: int, sunk: float) -> Manifold:
@@ -170,7 +169,7 @@ def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int,
         "doorway, front door, house door, interior door, room door, cellar door, closet door, shower door, entrance "
         "door, back door, office door, bathroom door, bedroom door, kitchen door, balcony door, fire door, screen door"
     ),
-    material="wood",
+    carved_from="wood",
     width=length(0.7, 5.0, default=0.95, usual=(0.8, 1.4), help="Outer width."),
     height=length(1.6, 4.0, default=2.05, usual=(1.9, 2.3), help="Outer height."),
     thick=length(0.02, 0.06, usual=(0.03, 0.05), help="Of a leaf.", words="thick, thickness"),
@@ -194,7 +193,7 @@ def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int,
     hinge_side=choice(("left", "right"), help="Of a single hinged leaf."),
 )
 def door(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     thick: float,
@@ -243,7 +242,7 @@ def door(
         groups = side_by_side(opening, leaves, frame, together=2)
         cut = stopped_opening(groups, the_depth, thick, clearance)
         below = [Field(left=g[0].left, right=g[-1].right, bottom=-1.0, top=0.1).box(-1.0, 1.0) for g in groups]
-        w.body("frame", frame_of(the_depth) - cut)
+        w.part("frame", frame_of(the_depth) - cut)
         w.cut("frame", below)
         opens = the_opens if len(groups) == 1 else 1.5
         its_leaves = [(place, field) for group in groups for place, field in enumerate(group)]
@@ -252,7 +251,7 @@ def door(
             if len(its_leaves) == 1 and hinge_side == "right":
                 edge = "right"
             x = field.right - 0.5 * stile_of(field) if edge == "left" else field.left + 0.5 * stile_of(field)
-            with drawn_on(w, clearance, open) as b:
+            with w.fitted(open) as b:
                 leaf(
                     b,
                     f"leaf_{number}",
@@ -269,14 +268,14 @@ def door(
                 f"leaf_{number}", panels_of(Field(left=field.left, right=field.right, bottom=floor, top=field.top), 0.0)
             )
             if handle == "bar":
-                with drawn_on(w, clearance) as b:
+                with w.fitted() as b:
                     grip(b, f"leaf_{number}", (x, 0, 1), -Y, Z, 0.3, kind=handle)
             # A handle that turns: a lever towards the hinge, on both sides where there is room for it, or a knob.
             name = f"handle_{number}"
             stile = stile_of(field)
             if handle == "lever":
                 side = 1 if edge == "left" else -1
-                with drawn_on(w, clearance, open) as b:
+                with w.fitted(open) as b:
                     lever(
                         b,
                         name,
@@ -289,7 +288,7 @@ def door(
                         through=thick if stile > 0.08 else 0.0,
                     )
             elif handle == "knob":
-                with drawn_on(w, clearance, open) as b:
+                with w.fitted(open) as b:
                     knob(
                         b,
                         name,
@@ -304,7 +303,7 @@ def door(
     elif kind == "sliding":
         # Leaves in grooves of sill and lintel; each passes its neighbour.
         tracks = Grooves(opening=opening_of(0.03), count=max(leaves, 2), thick=thick, clearance=clearance)
-        w.body("frame", frame_of(tracks.depth))
+        w.part("frame", frame_of(tracks.depth))
 
         def finish(board: Manifold, face: Field, front: float) -> Manifold:
             x = face.left + 0.5 * stile_of(face)
@@ -318,7 +317,7 @@ def door(
         # two.
         opening_2 = opening_of(floor)
         row = side_by_side(opening_2, max(2, leaves), 0.0, together=99)[0]
-        w.body("frame", frame_of(thick + 0.02) - opening_2.box(-1.0, 1.0) - below_of(opening_2))
+        w.part("frame", frame_of(thick + 0.02) - opening_2.box(-1.0, 1.0) - below_of(opening_2))
         gap = clearance + 0.001
         spare = (
             0.5 * ((thick + the_barrel + clearance) * (thick + the_barrel + clearance)) / (row[0].right - row[0].left)
@@ -340,7 +339,7 @@ def door(
                 ]
             inwards = k % 2 == 0
             level = -the_barrel - clearance if inwards else thick + the_barrel + clearance
-            w.body(name_2, solids_2)
+            w.part(name_2, solids_2)
             # Barrels on the faces of two leaves, or of a jamb and a leaf, about the line at x = field.left, y =
             # level.
             far = gap + 3.0 * the_barrel
@@ -351,9 +350,11 @@ def door(
             for share in (0.15, 0.5, 0.85):
                 place_2 = (field_2.left, level, field_2.bottom + share * its_height)
                 for body, half in zip((parent, name_2), halves, strict=False):
-                    w.add(body, (half if level < 0 else half.mirror((0, 1, 0))).translate(place_2))
+                    w.part(body, (half if level < 0 else half.mirror((0, 1, 0))).translate(place_2))
             opens_2 = folds if k == 0 else 2.0 * folds
-            w.turns(name_2, parent, (0, 0, -1 if inwards else 1), (field_2.left, level, 0), (0.0, opens_2), rest=open)
+            w.hinge(
+                name_2, parent, (0, 0, -1 if inwards else 1), (field_2.left, level, 0), opens_2, rest=open * opens_2
+            )
             parent = name_2
     w.settle()
 
@@ -363,7 +364,7 @@ def door(
         "skylight, roof window, house window, basement window, casement window, attic window, bathroom "
         "window, kitchen window"
     ),
-    material="wood",
+    carved_from="wood",
     width=length(0.6, 4.0, default=1.0, usual=(0.6, 1.6), help="Outer width."),
     height=length(0.5, 3.0, default=1.2, usual=(0.6, 1.6), help="Outer height."),
     frame=length(0.03, 0.08, default=0.05, usual=(0.04, 0.07), help="Its bars' width."),
@@ -384,7 +385,7 @@ def door(
     handle=choice(("lever", "none"), help="A handle that turns on hinged sashes."),
 )
 def window(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     frame: float,
@@ -422,7 +423,7 @@ def window(
     opening = Field(left=frame - 0.5 * width, right=0.5 * width - frame, bottom=frame, top=height - frame)
     if kind == "sliding":
         tracks = Grooves(opening=opening, count=max(sashes, 2), thick=thick, clearance=clearance)
-        w.body("frame", frame_of(tracks.depth))
+        w.part("frame", frame_of(tracks.depth))
 
         def finish(board: Any, face: Any, front: Any) -> Any:
             x = face.left + 0.5 * bar_of(face)
@@ -434,7 +435,7 @@ def window(
     elif kind == "pivot":
         # Sashes on pins in the jambs, which turn about their middle.
         groups = side_by_side(opening, sashes, frame)
-        w.body("frame", frame_of(the_depth))
+        w.part("frame", frame_of(the_depth))
         for number, group in enumerate(groups, start=1):
             field = group[0]
             w.cut("frame", field.box(-1.0, 1.0))
@@ -451,19 +452,19 @@ def window(
             far = ((ends[0][0] - clearance, *ends[0][1:]), (ends[1][0] + clearance, *ends[1][1:]))
             w.cut("frame", bore(pin, clearance, *far))
             pins = cylinder(pin, *ends) - field.box(-1.0, 1.0, inset=2.0 * gap)
-            w.body(name, glazed(board, field, start), pins)
-            w.turns(name, "frame", (1, 0, 0), (x, 0.5 * the_depth, z), (0.0, 1.3), rest=open)
+            w.part(name, glazed(board, field, start), pins)
+            w.hinge(name, "frame", (1, 0, 0), (x, 0.5 * the_depth, z), 1.3, rest=open * 1.3)
     else:
         together = 2 if kind == "casement" else 1
         groups_2 = side_by_side(opening, sashes, frame, together=together)
-        w.body("frame", frame_of(the_depth) - stopped_opening(groups_2, the_depth, thick, clearance))
+        w.part("frame", frame_of(the_depth) - stopped_opening(groups_2, the_depth, thick, clearance))
         number_2 = 0
         edges = {"left": -X, "right": X, "bottom": -Z, "top": Z}
         for group_2 in groups_2:
             for place, field_2 in enumerate(group_2):
                 number_2 = number_2 + 1
                 edge = {"tilt": "bottom", "awning": "top"}.get(kind, ("left", "right")[place])
-                with drawn_on(w, clearance, open) as b:
+                with w.fitted(open) as b:
                     leaf(
                         b,
                         f"sash_{number_2}",
@@ -484,7 +485,7 @@ def window(
                     x_2 = {"left": field_2.right - 0.5 * bar, "right": field_2.left + 0.5 * bar}.get(edge, x_2)
                     z_2 = {"bottom": field_2.top - 0.5 * bar, "top": field_2.bottom + 0.5 * bar}.get(edge, z_2)
                     along = X if edge == "top" else -Z
-                    with drawn_on(w, clearance, open) as b:
+                    with w.fitted(open) as b:
                         lever(
                             b,
                             f"handle_{number_2}",
@@ -510,9 +511,10 @@ def window(
     kind=choice(("rocker", "toggle"), help="Of the switches."),
     pitch=length(0.03, 0.08, default=0.045, usual=(0.035, 0.06), help="Of switches."),
     height=length(0.06, 0.15, default=0.085, usual=(0.075, 0.12), help="Of the plate."),
+    carved_from="plastic",
 )
 def switch_panel(
-    w: Workshop, rockers: int, dimmers: int, kind: str, pitch: float, height: float, open: float, clearance: float
+    w: ObjectBuilder, rockers: int, dimmers: int, kind: str, pitch: float, height: float, open: float, clearance: float
 ) -> None:
     """Light switches: rockers or toggles side by side in a plate, and dimmers."""
     switch_depth = 0.034  # of the housing [m]
@@ -540,7 +542,7 @@ def switch_panel(
     half = 0.5 * pitch * (rockers + dimmers) + 0.006
     plate = slab(half, (0, 0.004), (0, height))
     housing = box((0.004 - half, 0.001, 0.004), (half - 0.004, switch_depth, height - 0.004))
-    w.body("plate", plate, housing)
+    w.part("plate", plate, housing)
     for k in range(rockers):
         # A switch on pins that lie along x, tilted to its lower end.
         half_2 = 0.5 * pitch - 0.008
@@ -558,10 +560,10 @@ def switch_panel(
         w.cut("plate", bore(pin, tight, (-reach - tight, 0, 0), (reach + tight, 0, 0)).translate(place))
         tilt = the_tilt[kind]
         name = f"rocker_{k + 1}"
-        w.body(name, (solid + pins).rotate((degrees(tilt), 0, 0)).translate(place))
-        w.turns(name, "plate", (-1, 0, 0), place, (0.0, 2.0 * tilt), rest=open)
+        w.part(name, (solid + pins).rotate((degrees(tilt), 0, 0)).translate(place))
+        w.hinge(name, "plate", (-1, 0, 0), place, 2.0 * tilt, rest=open * (2.0 * tilt))
     for k in range(dimmers):
-        with drawn_on(w, clearance, open) as b:
+        with w.fitted(open) as b:
             knob(
                 b,
                 f"dimmer_{k + 1}",
@@ -589,9 +591,10 @@ def switch_panel(
     knobs=whole(0, 4, default=0, usual=(0, 3), help="Above the buttons.", words="dial"),
     shape=choice({"square": "rectangular", "round": "circular"}, help="Of the buttons."),
     display=choice({"none": "", "display": "screen"}, help="A recess for a screen."),
+    carved_from="plastic",
 )
 def button_panel(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -604,7 +607,7 @@ def button_panel(
     clearance: float,
 ) -> None:
     """Button panels and keypads: buttons in rows on a housing, with knobs and a display above them."""
-    w.body("housing", slab(0.5 * width, (0, depth), (0, height)))
+    w.part("housing", slab(0.5 * width, (0, depth), (0, height)))
     top = 0.94 * height
     if display == "display":
         w.cut("housing", slab(0.42 * width, (-1.0, 0.002), (top - 0.16 * height, top)))
@@ -613,7 +616,7 @@ def button_panel(
         pitch = 0.9 * width / knobs
         radius = min(0.09 * height, 0.38 * pitch)
         for k in range(knobs):
-            with drawn_on(w, clearance, open) as b:
+            with w.fitted(open) as b:
                 knob(
                     b,
                     f"knob_{k + 1}",
@@ -636,7 +639,7 @@ def button_panel(
     )
     size = (0.84 * pitch_2 - 2.0 * tight,) * 2
     for k_2, (x_2, z) in enumerate(grid(buttons, its_columns, area)):
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             button(
                 b,
                 f"button_{k_2 + 1}",

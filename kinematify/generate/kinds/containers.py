@@ -7,10 +7,10 @@ from math import asin, atan2, cos, degrees, hypot, pi, sin
 
 from manifold3d import Manifold
 
-from kinematify.generate.library.builder import ObjectBuilder, drawn_on
 from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.library.mechanisms import caster, in_fork
 from kinematify.generate.library.panels import grip
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, barrel
 from kinematify.generate.procedural.solids import (
     Point,
@@ -29,7 +29,6 @@ from kinematify.generate.procedural.solids import (
     union,
     vector,
 )
-from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
@@ -61,7 +60,7 @@ from kinematify.generate.procedural.workshop import Workshop
         },
     },
     title="box with a lid",
-    material="wood",
+    carved_from="wood",
     width=length(0.06, 2.0, default=0.3, usual=(0.15, 0.6), help="Outer width."),
     depth=length(0.05, 1.5, default=0.2, usual=(0.1, 0.4), help="Outer depth."),
     height=length(0.04, 1.5, default=0.15, usual=(0.06, 0.35), help="Without the lid."),
@@ -75,7 +74,7 @@ from kinematify.generate.procedural.workshop import Workshop
     top=choice({"flat": "", "round": "vaulted, domed, curved"}, help="Of a hinged lid."),
 )
 def box_(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     depth: float,
     height: float,
@@ -98,12 +97,12 @@ def box_(
     if lid == "hinged":
         # A lid that turns up about the upper back edge.
         level = height + clearance
-        w.body("body", tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall))
+        w.part("body", tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall))
         its_lid = slab(0.5 * width, (0, depth), (level, level + wall))
         if top == "round":
             its_lid = its_lid + vault(width, depth, level + 0.5 * wall, max(wall, min(0.35 * depth, 0.4 * height)))
         grip = slab(0.12 * width, (-0.012, 0.1 * depth), (level, level + 0.3 * wall))
-        w.body("lid", its_lid, grip)
+        w.part("lid", its_lid, grip)
         pivot = (0.0, depth, level)
         if hinge != "edge":
             edge = BackEdge(y=depth, level=level, below=height, above=wall, clearance=clearance)
@@ -114,7 +113,7 @@ def box_(
             pivot = add_barrels(
                 w, "lid", parent="body", edge=edge, places=places, length=length, radius=radius, knuckles=knuckles
             )
-        w.turns("lid", "body", (-1, 0, 0), pivot, (0.0, 1.9), rest=open)
+        w.hinge("lid", "body", (-1, 0, 0), pivot, 1.9, rest=open * 1.9)
     elif lid == "sliding":
         # A lid that is drawn out along -y in grooves of the side walls, as of a pencil box.
         level_2 = height - 2.0 * wall
@@ -124,24 +123,24 @@ def box_(
         half = 0.5 * width - wall + groove
         slot = slab(half, (-1.0, depth - wall + groove), (level_2, level_2 + thick))
         mouth = box((wall - 0.5 * width, -1.0, level_2), (0.5 * width - wall, wall + 0.001, height + 1.0))
-        w.body("body", body - slot - mouth)
+        w.part("body", body - slot - mouth)
         gap = min(clearance, 0.25 * wall)
         its_lid = box((gap - half, 0, level_2 + gap), (half - gap, depth - wall + groove - gap, level_2 + thick - gap))
         notch = slab(0.1 * width, (0.08 * depth, 0.08 * depth + 0.006), (level_2, level_2 + thick + 0.3 * wall))
-        w.body("lid", its_lid, notch.trim_by_plane((0, 0, 1), level_2 + 0.5 * thick))
-        w.slides("lid", "body", (0, -1, 0), (0, 0, level_2), (0.0, 0.85 * depth), rest=open)
+        w.part("lid", its_lid, notch.trim_by_plane((0, 0, 1), level_2 + 0.5 * thick))
+        w.slide("lid", "body", (0, -1, 0), 0.85 * depth, pivot=(0, 0, level_2), rest=open * (0.85 * depth))
     elif lid == "loose":
         # A lid that reaches over the rim and is lifted off.
         gap_2 = max(clearance, 0.0002)
-        w.body("body", tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall))
+        w.part("body", tray((-0.5 * width, 0, 0), (0.5 * width, depth, height), wall))
         out = gap_2 + wall
         skirt = max(2.0 * wall, 0.2 * height)
         lower = (-0.5 * width - out, -out, height - skirt)
         cap = box(lower, (0.5 * width + out, depth + out, height + gap_2 + wall))
         inner = slab(0.5 * width + gap_2, (-gap_2, depth + gap_2), (height - skirt - 1.0, height + gap_2))
-        w.body("lid", cap - inner)
-        travel = (0.0, 1.2 * skirt)
-        w.slides("lid", "body", (0, 0, 1), (0, 0.5 * depth, height), travel, rest=open)
+        w.part("lid", cap - inner)
+        travel = 1.2 * skirt
+        w.slide("lid", "body", (0, 0, 1), travel, pivot=(0, 0.5 * depth, height), rest=open * travel)
     w.settle()
 
 
@@ -165,8 +164,9 @@ def box_(
         help="How it opens.",
         words="lid, top",
     ),
+    carved_from="plastic",
 )
-def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open: float, clearance: float) -> None:
+def bottle(w: ObjectBuilder, width: float, height: float, neck: float, cap: str, open: float, clearance: float) -> None:
     """Bottles: a hollow body with a neck, and a cap that turns, is pulled out or flips open."""
     the_cap = 0.002  # wall of a cap [m]
     the_ribs = 24  # around a cap
@@ -194,7 +194,7 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         bead = cylinder(neck + 0.0015, shoulder, shoulder + 0.002)
         return outer + bead - inner
 
-    w.body("body", vessel())
+    w.part("body", vessel())
     if cap == "screw":
         # A cap over the neck, with ribs around it; a bead of the neck holds its lip, as a thread would.
         its_neck, tall = the_neck
@@ -206,15 +206,15 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         outer = inner + the_cap
         held = bottom + 0.003 + clearance
         its_ring = cylinder(bead, held, held + 0.002) - cylinder(its_neck - 0.0001, -1.0, 1.0)
-        w.add("body", its_ring)
+        w.part("body", its_ring)
         ribs = [
             cylinder(0.0008, outer * cos(a), outer * sin(a), (bottom, top))
             for a in [2.0 * pi * k / the_ribs for k in range(the_ribs)]
         ]
         hollow = cylinder(inner, bottom + 0.003, top) + cylinder(lip, -1.0, top)
         its_cap = cylinder(outer, bottom, top + the_cap) - hollow
-        w.body("cap", its_cap, ribs, material="plastic")
-        w.turns("cap", "body", (0, 0, 1), (0, 0, height))
+        w.part("cap", its_cap, ribs, look="plastic")
+        w.spin("cap", "body", (0, 0, 1), (0, 0, height))
     elif cap == "pull":
         # A stopper in the neck with a head above the rim.
         its_neck, tall_2 = the_neck
@@ -223,8 +223,8 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         plug = cylinder(its_neck - wall - tight / cos(pi / 48), height - deep, height + 0.003)
         head = cylinder(1.15 * its_neck, height + tight, height + tight + 0.6 * its_neck)
         knob = cylinder(0.8 * its_neck, height, height + tight + 0.9 * its_neck)
-        w.body("cap", plug, head, knob.trim_by_plane((0, 0, 1), height + tight), material="plastic")
-        w.slides("cap", "body", (0, 0, 1), (0, 0, height), (0.0, 1.2 * deep), rest=open)
+        w.part("cap", plug, head, knob.trim_by_plane((0, 0, 1), height + tight), look="plastic")
+        w.slide("cap", "body", (0, 0, 1), 1.2 * deep, pivot=(0, 0, height), rest=open * (1.2 * deep))
     elif cap == "flip":
         # A flat cap on a hinge behind the mouth, with a tab in front.
         its_neck, _unused = the_neck
@@ -233,13 +233,13 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         half = 0.6 * its_neck
         y = its_neck + 0.001
         inner_2 = cylinder(its_neck - wall, height - 0.02, height + 1.0)
-        w.add("body", slab(half, (0.5 * its_neck, y), (height - 0.01, height)) - inner_2)
+        w.part("body", slab(half, (0.5 * its_neck, y), (height - 0.01, height)) - inner_2)
         back = slab(half, (0, y), (level, level + thick))
         tab = slab(0.3 * its_neck, (-its_neck - 0.004, 0), (level + 0.5 * thick, level + thick))
-        w.body("cap", cylinder(its_neck, level, level + thick), back, tab, material="plastic")
+        w.part("cap", cylinder(its_neck, level, level + thick), back, tab, look="plastic")
         edge = BackEdge(y=y, level=level, below=0.009, above=thick, clearance=min(clearance, 0.5 * hinge))
         pivot = add_barrels(w, "cap", parent="body", edge=edge, places=(0.0,), length=1.6 * half, radius=hinge)
-        w.turns("cap", "body", (-1, 0, 0), pivot, (0.0, 1.5), rest=open)
+        w.hinge("cap", "body", (-1, 0, 0), pivot, 1.5, rest=open * 1.5)
     w.settle()
 
 
@@ -264,9 +264,10 @@ def bottle(w: Workshop, width: float, height: float, neck: float, cap: str, open
         help="A bail with a grip around its top, or the wire alone.",
         words="bail",
     ),
+    carved_from="plastic",
 )
 def bucket(
-    w: Workshop, width: float, height: float, taper: float, wire: float, handle: str, open: float, clearance: float
+    w: ObjectBuilder, width: float, height: float, taper: float, wire: float, handle: str, open: float, clearance: float
 ) -> None:
     """Buckets: a vessel that widens upwards, and a bail that swings on studs at its sides."""
     below = 0.025  # from the rim down to the studs [m]
@@ -298,7 +299,7 @@ def bucket(
     level = height - below
     grip = 2.6 * wire if handle == "grip" else wire
     reach = hypot(radius + the_bead + clearance, below) + wire + 0.0005
-    w.body("body", vessel())
+    w.part("body", vessel())
     bend = 2.4 * stud * (2.4 * stud) / reach
     eyes: list[Manifold] = []
     holes: list[Manifold] = []
@@ -308,16 +309,16 @@ def bucket(
         boss = cylinder(2.0 * stud, (side * 0.3 * radius, face), 0, level)
         shaft = cylinder(stud, (side * 0.3 * radius, eye[1] + side * (clearance + 0.0001)), 0, level)
         head = cylinder(1.9 * stud, (eye[1] + side * clearance, eye[1] + side * (clearance + wire)), 0, level)
-        w.add("body", boss, shaft, head)
+        w.part("body", boss, shaft, head)
         eyes = [*eyes, cylinder(2.2 * stud, (eye[0], eye[1]), 0, level)]
         holes = [*holes, bore(stud, clearance, (side * 0.5 * reach, 0, level), (side * 2.0 * reach, 0, level))]
     w.cut("body", bucket_inside)
     lies = asin(min(0.9, (below + 1.2 * grip + clearance) / (0.9 * reach)))
     bail = union(*bail_of(reach, wire, grip), *[eye.translate((0, 0, -level)) for eye in eyes])
     bail = bail.rotate((90.0 - degrees(lies), 0, 0)).translate((0, 0, level)) - union(*holes)
-    w.body("handle", bail, material="steel")
-    swing = (0.0, pi - 2.0 * lies)
-    w.turns("handle", "body", (-1, 0, 0), (0, 0, level), swing, rest=open)
+    w.part("handle", bail, look="steel")
+    swing = pi - 2.0 * lies
+    w.hinge("handle", "body", (-1, 0, 0), (0, 0, level), swing, rest=open * swing)
     w.settle()
 
 
@@ -338,8 +339,11 @@ def bucket(
         words="cover",
     ),
     shape=choice(("round", "square"), help="Of the bin."),
+    carved_from="plastic",
 )
-def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, open: float, clearance: float) -> None:
+def trash_can(
+    w: ObjectBuilder, width: float, height: float, lid: str, shape: str, open: float, clearance: float
+) -> None:
     """Trash cans: a pedal and a hinged lid, a flap that swings both ways, or a lid that is lifted off."""
     wall = 0.004
     base = 0.06  # height of the solid foot that holds a pedal [m]
@@ -371,13 +375,13 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         level = height + clearance
         thick = 0.012
         seat = 0.04
-        w.body("body", bin(base), slab(seat, (0.8 * half, half + 0.002), (height - 0.03, height)))
+        w.part("body", bin(base), slab(seat, (0.8 * half, half + 0.002), (height - 0.03, height)))
         w.cut("body", inside(half, height))
         back = slab(seat, (0.0, half + 0.002), (level, level + thick))
-        w.body("lid", cover(0.0, level, level + thick), back)
+        w.part("lid", cover(0.0, level, level + thick), back)
         edge = BackEdge(y=half + 0.002, level=level, below=0.03, above=thick, clearance=clearance)
         pivot = add_barrels(w, "lid", parent="body", edge=edge, places=(0.0,), length=2.0 * seat, radius=0.004)
-        w.turns("lid", "body", (-1, 0, 0), pivot, (0.0, 1.5), rest=open)
+        w.hinge("lid", "body", (-1, 0, 0), pivot, 1.5, rest=open * 1.5)
         # A lever on a pin across a slot of the foot; its end in front goes down.
         wide = 0.025
         level_2 = 0.036
@@ -392,8 +396,8 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         arm = slab(inner, (tip + 0.02, back_2), (level_2 - radius, level_2 + radius))
         plate = slab(1.6 * wide, (tip, tip + 0.035), (level_2 - radius, level_2 + radius))
         hub = cylinder(1.4 * radius, (-inner, inner), back_2, level_2)
-        w.body("pedal", arm, plate, hub, cylinder(radius, *pin), material="steel")
-        w.turns("pedal", "body", (1, 0, 0), (0, back_2, level_2), (0.0, pedal), rest=open)
+        w.part("pedal", arm, plate, hub, cylinder(radius, *pin), look="steel")
+        w.hinge("pedal", "body", (1, 0, 0), (0, back_2, level_2), pedal, rest=open * pedal)
     elif lid == "swing":
         # A flap in the mouth on two pins in the side walls.
         half_2 = 0.5 * width
@@ -409,20 +413,20 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         ridge = slab(0.5 * reach, 0.008, (level_3, level_3 + 0.012))
         pin_2 = ((-half_2 - 0.002, 0, level_3), (half_2 + 0.002, 0, level_3))
         steepest = asin(min(0.93, 0.95 * (level_3 - wall) / (reach + 0.01)))
-        w.body("body", bin(0.0))
+        w.part("body", bin(0.0))
         w.cut("body", bore(radius_2, clearance, (-2.0 * half_2, 0, level_3), (2.0 * half_2, 0, level_3)))
-        w.body("flap", flap, ridge, cylinder(radius_2, *pin_2))
-        w.turns("flap", "body", (1, 0, 0), (0, 0, level_3), (-steepest, steepest), rest=open)
+        w.part("flap", flap, ridge, cylinder(radius_2, *pin_2))
+        w.hinge("flap", "body", (1, 0, 0), (0, 0, level_3), steepest, -steepest, rest=open * steepest)
     elif lid == "lift":
         # A lid with a skirt around the rim and a handle.
         skirt = 0.1 * height
         top = height + clearance + wall
         cap = cover(clearance + 1.5 * wall, height - skirt, top) - cover(clearance, -1.0, height + clearance)
-        w.body("body", bin(0.0))
-        w.body("lid", cap)
-        with drawn_on(w, clearance) as b:
+        w.part("body", bin(0.0))
+        w.part("lid", cap)
+        with w.fitted() as b:
             grip(b, "lid", (0, 0, top), Z, X, 0.12, kind="knob")
-        w.slides("lid", "body", (0, 0, 1), (0, 0, height), (0.0, 1.2 * skirt), rest=open)
+        w.slide("lid", "body", (0, 0, 1), 1.2 * skirt, pivot=(0, 0, height), rest=open * (1.2 * skirt))
     w.settle()
 
 
@@ -439,9 +443,10 @@ def trash_can(w: Workshop, width: float, height: float, lid: str, shape: str, op
         {"trolley": "telescopic, telescoping, extendable, pull out", "side": "carrying"},
         help="One that is drawn out at the top, or only the one at the side.",
     ),
+    carved_from="plastic",
 )
 def suitcase(
-    w: Workshop, width: float, depth: float, height: float, wheels: int, handle: str, open: float, clearance: float
+    w: ObjectBuilder, width: float, depth: float, height: float, wheels: int, handle: str, open: float, clearance: float
 ) -> None:
     """Suitcases that stand upright: two shells on a hinge at the left, wheels, and a handle that is drawn out."""
     fork = 0.056  # height of a wheel with its fork [m]
@@ -501,13 +506,13 @@ def suitcase(
         for part in (0.25, 0.75):
             halves = barrel(0.05, hinge, clearance, (on_body, on_front))
             for name, half in zip(("body", "front"), halves, strict=False):
-                w.add(name, half.translate((x, -clearance, bottom + part * (top - bottom))))
+                w.part(name, half.translate((x, -clearance, bottom + part * (top - bottom))))
         return (x, -clearance, bottom)
 
     deep = 0.5 * depth
-    w.body("body", shell(0.0, deep), side_handle())
-    w.body("front", shell(-clearance, -deep))
-    w.turns("front", "body", (0, 0, -1), hinges(), (0.0, opens), rest=open)
+    w.part("body", shell(0.0, deep), side_handle())
+    w.part("front", shell(-clearance, -deep))
+    w.hinge("front", "body", (0, 0, -1), hinges(), opens, rest=open * opens)
     if handle == "trolley":
         # Two tubes in sleeves at the back, with a grip above the top.
         x = 0.22 * width
@@ -516,14 +521,14 @@ def suitcase(
         grip = top + 0.012
         tubes: list[Manifold] = []
         for side in (-x, x):
-            w.add("body", cylinder(tube + clearance + 0.003, side, y, (bottom + 0.02, top)))
+            w.part("body", cylinder(tube + clearance + 0.003, side, y, (bottom + 0.02, top)))
             tubes = [*tubes, cylinder(tube, side, y, (low + clearance, grip))]
         for side in (-x, x):
             w.cut("body", bore(tube, clearance, (side, y, low), (side, y, top + 1.0)))
         bar = rod(0.009, (-x, x), y, grip)
-        w.body("handle", tubes, bar, material="metal")
+        w.part("handle", tubes, bar, look="metal")
         way = 0.75 * (top - low)
-        w.slides("handle", "body", (0, 0, 1), (0, y, top), (0.0, way), rest=open)
+        w.slide("handle", "body", (0, 0, 1), way, pivot=(0, y, top), rest=open * way)
     # Castors under both halves, or two wheels that only roll and feet beside them.
     x_2 = 0.5 * width - 0.07
     y_2 = 0.25 * depth
@@ -531,25 +536,24 @@ def suitcase(
     front = [("front", -x_2, -y_2), ("front", x_2, -y_2)]
     places = {2: back, 3: [*back, ("front", 0.0, -y_2)], 4: [*back, *front]}[wheels]
     for k, (parent, px, py) in enumerate(places):
-        w.add(parent, cylinder(0.009, px, py, (bottom, bottom + 0.028)))
+        w.part(parent, cylinder(0.009, px, py, (bottom, bottom + 0.028)))
         if wheels == 2:
-            with drawn_on(w, clearance) as b:
+            with w.fitted() as b:
                 in_fork(b, f"wheel_{k + 1}", parent, (px, py, wheel), wheel, 0.02, bottom + 0.001)
         else:
-            with drawn_on(w, clearance) as b:
+            with w.fitted() as b:
                 caster(b, f"wheel_{k + 1}", parent, (px, py, bottom), bottom, fork=f"castor_{k + 1}", deep=0.022)
     if wheels == 2:
         feet = [
             box((s * x_2 - 0.012, -y_2 - 0.012, 0), (s * x_2 + 0.012, 0.012 - y_2, bottom + 0.001)) for s in (-1, 1)
         ]
-        w.add("front", feet)
+        w.part("front", feet)
     w.settle()
 
 
 @kind(
     "cantilever toolbox",
     words="sewing box, cantilever sewing box, concertina toolbox",
-    material="wood",
     part_words={"arm": "link, strut"},
     details={"handle": 1},
     width=(0.3, 0.6),

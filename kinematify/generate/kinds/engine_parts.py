@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import kind, whole
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.solids import X, Y, Z, beam, slab
 
 

@@ -6,10 +6,10 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import choice, kind, whole
 from kinematify.generate.library.mechanisms import case, caster, legs, wheel
 from kinematify.generate.library.panels import grip
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab
 
 

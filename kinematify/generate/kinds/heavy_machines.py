@@ -12,9 +12,9 @@ from manifold3d import Manifold
 
 from kinematify.generate.kinds.limbs import track_ring, track_top, tracked, turntable
 from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.pieces.bearing_pieces import bent_fork, fork_room, stub
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, off, rod, slab, union, vector
-from kinematify.generate.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 @kind(
     walls=180,
     words="digger, mini excavator, toy excavator, toy digger, crawler excavator",
-    material="steel",
+    carved_from="steel",
     length=length(1.5, 5.0, default=2.6, usual=(1.6, 4.0), help="Of the tracks."),
     width=length(1.0, 4.0, default=1.8, usual=(1.2, 2.6), help="Over the tracks."),
     boom=length(1.6, 8.0, default=2.6, usual=(2.0, 4.0), help="Its length."),
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
 )
 def excavator(
-    w: Workshop,
+    w: ObjectBuilder,
     length: float,
     width: float,
     boom: float,
@@ -56,7 +56,7 @@ def excavator(
         top = low + thick
         radius = min(0.055 * tracks_width, 0.05 * tracks_length)
         cab = 0.42 * tracks_length
-        w.add(
+        w.part(
             "house",
             slab(half, (-0.8 * long, long), (low, top)),
             box((-half, -0.75 * long, top - 0.001), (-0.2 * tracks_width, 0.1 * long, top + cab)),
@@ -111,10 +111,10 @@ def excavator(
     below = leans[0]
     for name, above in (("boom", leans[1]), ("stick", leans[3]), ("bucket", leans[4])):
         forked, tongue = bent_fork(pivot_2, (below, above), 2.6 * radius, radius, clearance)
-        w.add(parent, forked)
+        w.part(parent, forked)
         if name == "bucket":
             scoop = scoop_of(radius, fork_room(radius, 0.15 * radius))
-            w.body(name, tongue, scoop.rotate((degrees(above), 0, 0)).translate(pivot_2))
+            w.part(name, tongue, scoop.rotate((degrees(above), 0, 0)).translate(pivot_2))
             end = pivot_2
             last = above
         else:
@@ -125,8 +125,9 @@ def excavator(
             stop = end - 2.3 * radius * along(last)
             thick = 1.5 * radius if name == "boom" else radius
             beams = (beam_(start, bend, radius, thick), beam_(bend, stop, radius, thick, swap=True))
-            w.body(name, tongue, beams)
-        w.turns(name, parent, (-1, 0, 0), pivot_2, swings[name], rest=open)
+            w.part(name, tongue, beams)
+        least, most = swings[name]
+        w.hinge(name, parent, (-1, 0, 0), pivot_2, most, least, rest=open * most)
         parent = name
         below = last
         pivot_2 = end
@@ -135,7 +136,7 @@ def excavator(
 
 @kind(
     words=("tower crane, mobile crane, construction crane, toy crane, truck crane, toy tower crane, building crane"),
-    material="steel",
+    carved_from="steel",
     kind=choice(
         {"tower": "", "mobile": "crawler, tracked, telescopic, telescoping"},
         help="A tower with a trolley on its jib, or a boom on tracks.",
@@ -146,11 +147,11 @@ def excavator(
     wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
 )
 def crane(
-    w: Workshop, kind: str, height: float, jib: float, sections: int, wheels: int, open: float, clearance: float
+    w: ObjectBuilder, kind: str, height: float, jib: float, sections: int, wheels: int, open: float, clearance: float
 ) -> None:
     """Cranes: a tower with a trolley on its jib, or a house on tracks with a boom that lifts and lengthens."""
     lean = 0.7  # of a mobile crane's boom at zero, from the upright to the front [rad]
-    rises = (-0.35, 0.5)  # of the boom, positive upwards [rad]
+    least, most = -0.35, 0.5  # of the boom, positive upwards [rad]
 
     # Four posts with rungs, closed by a plate on top.
     def mast(half: float, low: float, high: float) -> Sequence[Manifold]:
@@ -171,16 +172,16 @@ def crane(
         end = off(top, 0, 0, -length)
         ties = [box(off(at, -x - rope, -rope, -rope), off(at, x + rope, rope, rope)) for at in (top, end)]
         falls = [(off(top, s * x, 0, 0), off(end, s * x, 0, 0)) for s in (-1, 1)]
-        w.add(parent, ties, [cylinder(rope, *fall) for fall in falls])
+        w.part(parent, ties, [cylinder(rope, *fall) for fall in falls])
         start = off(top, 0, 0, -0.6 * half - 2.0 * clearance)
         block = box(off(start, -0.62 * size, -0.35 * size, -size), off(start, 0.62 * size, 0.35 * size, 0))
         block = block - union(*[bore(rope, tight, off(low, 0, 0, -1.0), high) for high, low in falls])
         shape = ((0.0, 0.8), (0.0, 1.4), (0.3, 1.8), (-0.1, 2.2), (-0.5, 2.0), (-0.6, 1.6))
         points = [off(start, 0, ahead * size, -down * size) for ahead, down in shape]
         hook = [rod(0.13 * size, one, other, segments=16) for one, other in pairwise(points)]
-        w.body("hook", block, hook, material="steel", color="yellow")
+        w.part("hook", block, hook, look="yellow steel")
         travel = length - 0.6 * half - 2.0 * clearance - 2.4 * size - 3.0 * rope
-        w.slides("hook", parent, (0, 0, -1), start, (0.0, travel), rest=open)
+        w.slide("hook", parent, (0, 0, -1), travel, pivot=start, rest=open * travel)
 
     # A square bar along z, from `deep` on hollow and open at its end if `inner` is above zero.
     def tube_(half: float, start: float, end: float, inner: float, deep: float) -> Manifold:
@@ -192,15 +193,15 @@ def crane(
         half = min(0.02 * height + 0.01 * jib, 0.05 * jib, 0.04 * height)
         level = height - 7.0 * half
         foot = 0.12 * height + 2.0 * half
-        w.body("tower", slab(foot, foot, (0, 0.02 * height)), mast(half, 0.01 * height, level))
+        w.part("tower", slab(foot, foot, (0, 0.02 * height)), mast(half, 0.01 * height, level))
         pivot = (0.0, 0.0, level + half)
         boss, hole, rotor = stub(pivot, (0, 0, 1), 1.5 * half, clearance, length=half)
-        w.add("tower", boss)
+        w.part("tower", boss)
         w.cut("tower", hole)
         beam = level + 3.0 * half
         thick = 0.7 * half
         counter = 0.3 * jib
-        w.body(
+        w.part(
             "jib",
             rotor,
             slab(half, half, (pivot[2] + 0.9 * half, height)),
@@ -209,7 +210,7 @@ def crane(
             box((half - 0.001, -2.5 * half, beam - 1.5 * half), (2.6 * half, half, beam + half)),
             [rod(0.12 * half, (0, 0, height), (0, y, beam + thick), segments=12) for y in (-0.7 * jib, 0.9 * counter)],
         )
-        w.turns("jib", "tower", (0, 0, 1), pivot)
+        w.spin("jib", "tower", (0, 0, 1), pivot)
         # A trolley around the jib, with a rope on which a hook is lowered.
         wall = 0.35 * half
         long = 1.5 * half
@@ -219,9 +220,9 @@ def crane(
         block = slab(gap + wall, (y - long, y + long), (beam - clearance - wall, high + wall))
         inner = slab(gap, (-2.0 * jib, 1.0), (beam - clearance, high))
         slot = slab(0.3 * half, (-2.0 * jib, 1.0), (high - 0.001, high + 1.0))
-        w.body("trolley", block - inner - slot)
+        w.part("trolley", block - inner - slot)
         travel = 0.98 * jib - 3.2 * half - 2.0 * long
-        w.slides("trolley", "jib", (0, -1, 0), (0, y, beam), (0.0, travel), rest=open)
+        w.slide("trolley", "jib", (0, -1, 0), travel, pivot=(0, y, beam), rest=open * travel)
         top = beam - clearance - 0.5 * wall
         hook_of("trolley", vector(0.0, y, top), half=half, length=0.75 * beam)
     elif kind == "mobile":
@@ -239,7 +240,7 @@ def crane(
         low = tracks_top - 0.2 * tracks_ring
         top_2 = low + 0.1 * tracks_length
         radius = 0.14 * tracks_width
-        w.add(
+        w.part(
             "house",
             slab(half_2, (-0.7 * long_2, long_2), (low, top_2)),
             box(
@@ -250,7 +251,7 @@ def crane(
         )
         pivot_2 = vector(0.0, 0.1 * long_2, top_2 + 2.0 * radius)
         forked, tongue = bent_fork(pivot_2, (0.0, lean), 2.4 * radius, radius, clearance)
-        w.add("house", forked)
+        w.part("house", forked)
         # The boom on its tongue, its sections, and the hook at the end of the last one.
         long_3 = 0.5 * jib
         wall_2 = 0.12 * radius
@@ -263,20 +264,20 @@ def crane(
         def placed(*solids: Manifold) -> Sequence[Manifold]:
             return [solid.rotate((degrees(lean), 0, 0)).translate(pivot_2) for solid in solids]
 
-        w.body("boom", tongue, placed(tube_(half_3, start, long_3, half_3 - wall_2 if sections else 0.0, deep)))
-        w.turns("boom", "house", (-1, 0, 0), pivot_2, rises, rest=open)
+        w.part("boom", tongue, placed(tube_(half_3, start, long_3, half_3 - wall_2 if sections else 0.0, deep)))
+        w.hinge("boom", "house", (-1, 0, 0), pivot_2, most, least, rest=open * most)
         parent = "boom"
         for k in range(sections):
             half_3 = half_3 - (wall_2 + gap_2)
             start, deep, long_3 = (deep + gap_2, deep + gap_2 + wall_2, long_3 + 1.5 * wall_2)
             name = f"section_{k + 1}"
-            w.body(name, placed(tube_(half_3, start, long_3, half_3 - wall_2 if k + 1 < sections else 0.0, deep)))
-            w.slides(name, parent, along, pivot_2, (0.0, 0.75 * (long_3 - start)), rest=open)
+            w.part(name, placed(tube_(half_3, start, long_3, half_3 - wall_2 if k + 1 < sections else 0.0, deep)))
+            w.slide(name, parent, along, 0.75 * (long_3 - start), pivot=pivot_2, rest=open * (0.75 * (long_3 - start)))
             parent = name
         tip = pivot_2 + (long_3 + 0.8 * half_3) * along
         jut = off(tip, 0, -2.6 * radius, 0)
         head = slab(0.8 * half_3, 0.8 * half_3, (long_3 - 0.001, long_3 + 1.6 * half_3))
-        w.add(
+        w.part(
             parent,
             placed(head),
             rod(min(0.35 * half_3, 0.3 * radius), tip, jut, segments=16),
@@ -292,7 +293,7 @@ def crane(
         "linkage, kinematic tree, tree robot, branching robot"
     ),
     title="tree of links on tracks",
-    material="metal",
+    carved_from="metal",
     branches=whole(1, 8, usual=(2, 6), help="Around the trunk.", words="branch, limb"),
     links=whole(1, 3, help="Of a branch.", words="link, joint, joint per branch"),
     wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
@@ -303,7 +304,7 @@ def crane(
     joint_radius=length(0.015, 0.04, default=0.025, usual=(0.02, 0.035), help="Of the hinges."),
 )
 def tracked_tree(
-    w: Workshop,
+    w: ObjectBuilder,
     branches: int,
     links: int,
     wheels: int,
@@ -330,7 +331,7 @@ def tracked_tree(
     turntable(w, clearance, "trunk", "tracks", tracks_length, tracks_width)
     low = tracks_top - 0.2 * tracks_ring
     ring = max(2.5 * joint_radius, 2.1 * joint_radius / sin(pi / max(branches, 3)))
-    w.add("trunk", cylinder(max(1.6 * joint_radius, 0.3 * ring), low, low + trunk))
+    w.part("trunk", cylinder(max(1.6 * joint_radius, 0.3 * ring), low, low + trunk))
     for k in range(branches):
         # An arm of the trunk, and links one after the other; built towards -y and then turned about the trunk.
         angle = 360.0 * k / branches
@@ -346,7 +347,7 @@ def tracked_tree(
         parent = "trunk"
         pivot = first
         below = start
-        w.add(
+        w.part(
             parent, turned(cylinder(0.7 * joint_radius, foot, pivot - 1.6 * joint_radius * along(below), segments=20))
         )
         for link in range(links):
@@ -356,10 +357,10 @@ def tracked_tree(
             end = pivot + link_length * along(above)
             last = link + 1 == links
             stop = end if last else end - 1.6 * joint_radius * along(above)
-            w.add(parent, turned(forked))
+            w.part(parent, turned(forked))
             bar = cylinder(0.7 * joint_radius, pivot + 1.6 * joint_radius * along(above), stop, segments=20)
-            w.body(name, turned(tongue, bar, *([ball(1.3 * joint_radius, end, segments=20)] if last else [])))
-            w.turns(name, parent, turn @ (-1.0, 0.0, 0.0), turn @ pivot, (-swing, swing))
+            w.part(name, turned(tongue, bar, *([ball(1.3 * joint_radius, end, segments=20)] if last else [])))
+            w.hinge(name, parent, turn @ (-1.0, 0.0, 0.0), turn @ pivot, swing, -swing)
             parent = name
             pivot = end
             below = above

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, slab
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, button, case, knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import button, case, knob
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, slab
 
 
@@ -226,7 +226,7 @@ def spice_rack(b: ObjectBuilder, number: int) -> None:
     for a in [2 * pi * k / number for k in range(number)]:
         x, y = 0.07 * cos(a), 0.07 * sin(a)
         jars = [b.cylinder(0.022, x, y, (z + 0.01, z + 0.1)) for z in (0.03, 0.16)]
-        b.part("rack", b.painted(*jars, material="glass", color="green"))
+        b.part("rack", b.painted(*jars, look="green glass"))
     b.spin("rack", "base", Z, (0, 0, 0))
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import case, caster, knob, legs
 from kinematify.generate.library.panels import carcass, drawer, leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, slab, vector
 
 

@@ -9,15 +9,14 @@ from typing import Any
 from manifold3d import Manifold
 
 from kinematify.generate.library import mechanisms
-from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.library.mechanisms import button, knob, lever
 from kinematify.generate.library.panels import add_door, add_drawer
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel, stub
-from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
+from kinematify.generate.procedural.pieces.fronts import Bay, carcass, room
 from kinematify.generate.procedural.solids import Point, X, Y, Z, box, cylinder, slab, tray, union, vector
-from kinematify.generate.procedural.workshop import Workshop
 
 
 @kind(
@@ -26,7 +25,7 @@ from kinematify.generate.procedural.workshop import Workshop
         "cooker, kitchen range, gas range, electric oven, electric cooker, gas stove oven, induction stove"
     ),
     title="oven or stove",
-    material="metal",
+    carved_from="metal",
     width=length(0.35, 1.2, default=0.6, usual=(0.5, 0.9), help="Outer width."),
     height=length(0.45, 1.2, default=0.85, usual=(0.6, 0.95), help="Outer height."),
     depth=length(0.35, 0.9, default=0.6, usual=(0.5, 0.65), help="Outer depth of the body."),
@@ -37,7 +36,7 @@ from kinematify.generate.procedural.workshop import Workshop
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
 )
 def oven(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -84,15 +83,14 @@ def oven(
 
     strip = min(0.12, max(0.07, 0.14 * height))
     opening = Bay(left=-0.5 * width, right=0.5 * width, bottom=plinth, top=height - strip, depth=depth, wall=wall)
-    w.body("body", carcass(width, height, depth, [opening]), grate(opening))
+    w.part("body", carcass(width, height, depth, [opening]), grate(opening))
     if top == "burners":
         w.cut("body", burners(width, depth, height))
-    fitting = Fitting(clearance=clearance, grip=handle, rest=open)
-    add_door(w, "door", "body", opening, fitting, side="bottom", hinge=hinge)
+    add_door(w, "door", "body", opening, side="bottom", hinge=hinge, handle=handle, opened=open)
     w.cut("door", window(opening, clearance))
     for k in range(knobs):
         x = ((k + 0.5) / knobs - 0.5) * 0.9 * width
-        with drawn_on(w, clearance, open) as b:
+        with w.fitted(open) as b:
             knob(
                 b,
                 f"knob_{k + 1}",
@@ -115,9 +113,10 @@ def oven(
     knobs=whole(0, 2, default=0, help="Above the buttons.", words="dial"),
     handle=choice(("bar", "edge", "none"), help="What the door is pulled by."),
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
+    carved_from="plastic",
 )
 def microwave(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -135,9 +134,8 @@ def microwave(
     behind = depth - wall - clearance
     opening = Bay(left=-0.5 * width, right=border, bottom=0.0, top=height, depth=behind, wall=wall)
     panel = box((border + 0.002, -wall - clearance, 0), (0.5 * width, 0.001, height))
-    w.body("body", carcass(width, height, behind, [opening]), panel)
-    fitting = Fitting(clearance=clearance, grip=handle, rest=open)
-    add_door(w, "door", "body", opening, fitting, side="left", hinge=hinge)
+    w.part("body", carcass(width, height, behind, [opening]), panel)
+    add_door(w, "door", "body", opening, side="left", hinge=hinge, handle=handle, opened=open)
     margin = 0.15 * opening.width
     front = -clearance - wall
     recess = box((opening.left + margin, -1.0, margin), (border - 1.2 * margin, front + 0.003, height - margin))
@@ -148,13 +146,13 @@ def microwave(
     centre = (0.5 * (opening.left + opening.right), 0.5 * (opening.depth - wall))
     pivot = (*centre, floor + 0.006)
     boss, hole, rotor = stub(pivot, (0, 0, 1), 0.015, clearance, length=0.012)
-    w.add("body", boss)
+    w.part("body", boss)
     w.cut("body", hole)
     level = pivot[2] + 0.011 + clearance
     plate = cylinder(radius, (*centre, level), (*centre, level + 0.012))
     hollow = cylinder(radius - 0.006, (*centre, level + 0.005), (*centre, level + 0.02))
-    w.body("turntable", rotor, plate - hollow, material="glass")
-    w.turns("turntable", "body", (0, 0, 1), pivot)
+    w.part("turntable", rotor, plate - hollow, look="glass")
+    w.spin("turntable", "body", (0, 0, 1), pivot)
     # Knobs above buttons, in the middle of the panel.
     its_width = the_panel * width
     border_2 = 0.55 * height if knobs else 0.85 * height
@@ -162,7 +160,7 @@ def microwave(
     for k in range(knobs):
         radius_2 = min(0.3 * its_width, 0.3 * height / knobs)
         z = border_2 + (knobs - k - 0.5) * (0.95 * height - border_2) / knobs
-        with drawn_on(w, clearance, open) as b:
+        with w.fitted(open) as b:
             knob(b, f"knob_{k + 1}", "body", (x, front, z), min(radius_2, 0.17 * height / knobs), -Y, reach=4.7)
     columns, rows = (3, -(-buttons // 3)) if buttons > 3 else (1, max(1, buttons))
     size = (0.8 * its_width, border_2 - 0.1 * height)
@@ -171,14 +169,14 @@ def microwave(
     middle = 0.05 * height + 0.5 * size[1]
     for k, (u, v) in enumerate(grid(buttons, columns, area)):
         cap = (0.9 * pitch[0] - 2 * clearance - 0.002, 0.9 * pitch[1] - 2 * clearance - 0.002)
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             button(b, f"button_{k + 1}", "body", (x + u, front, middle + v), cap, 0.003, -Y)
     w.settle()
 
 
 @kind(
     words="dish washing machine",
-    material="metal",
+    carved_from="metal",
     width=length(0.4, 1.0, default=0.6, usual=(0.45, 0.62), help="Outer width."),
     height=length(0.6, 1.1, default=0.82, usual=(0.7, 0.88), help="Outer height."),
     depth=length(0.4, 0.8, default=0.58, usual=(0.5, 0.62), help="Outer depth of the body."),
@@ -191,7 +189,7 @@ def microwave(
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
 )
 def dishwasher(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -224,13 +222,12 @@ def dishwasher(
         return tray(lower, upper, wall) - union(*slots)
 
     opening = Bay(left=-0.5 * width, right=0.5 * width, bottom=plinth, top=height, depth=depth, wall=the_wall)
-    w.body("body", carcass(width, height, depth, [opening]))
-    fitting = Fitting(clearance=clearance, grip=handle, rest=open)
-    add_door(w, "door", "body", opening, fitting, side="bottom", hinge=hinge)
+    w.part("body", carcass(width, height, depth, [opening]))
+    add_door(w, "door", "body", opening, side="bottom", hinge=hinge, handle=handle, opened=open)
     # A row of buttons at the upper edge of the door, above its handle.
     for k in range(buttons):
         x = (k - 0.5 * (buttons - 1)) * 0.03
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             button(
                 b, f"button_{k + 1}", "door", (x, -clearance - the_wall, opening.top - 0.012), (0.018, 0.01), 0.003, -Y
             )
@@ -238,13 +235,13 @@ def dishwasher(
     middle = 0.5 * (opening.depth - the_wall)
     pivot = (0.0, middle, floor + 0.02)
     boss, hole, rotor = stub(pivot, (0, 0, 1), 0.015, clearance, length=0.022)
-    w.add("body", boss)
+    w.part("body", boss)
     w.cut("body", hole)
     half = 0.42 * min(opening.width - the_wall, opening.depth - the_wall)
     level = pivot[2] + clearance + 0.012
     blade = slab(half, (middle - 0.02, middle + 0.02), (level, level + 0.01))
-    w.body("spray_arm", rotor, blade)
-    w.turns("spray_arm", "body", (0, 0, 1), pivot)
+    w.part("spray_arm", rotor, blade)
+    w.spin("spray_arm", "body", (0, 0, 1), pivot)
     # Baskets on rails at both walls; they come forward as far as the closed door lets them.
     half_2 = 0.5 * (opening.width - the_wall)
     back = opening.depth - the_wall
@@ -258,18 +255,18 @@ def dishwasher(
             box((x0, 0.01, level_2), (x1, back + 0.001, level_2 + rail))
             for x0, x1 in ((-half_2 - 0.001, -half_2 + 0.02), (half_2 - 0.02, half_2 + 0.001))
         ]
-        w.add("body", rails)
+        w.part("body", rails)
         lower = (-half_2 + 0.004 + clearance, 0.012 + travel, level_2 + rail + clearance)
         upper = (half_2 - 0.004 - clearance, back - clearance, level_2 + 0.75 * pitch)
-        w.body(f"rack_{k_2 + 1}", basket(lower, upper), material="steel")
+        w.part(f"rack_{k_2 + 1}", basket(lower, upper), look="steel")
         middle_2 = (0.0, 0.5 * (lower[1] + upper[1]), lower[2])
-        w.slides(f"rack_{k_2 + 1}", "body", (0, -1, 0), middle_2, (0.0, travel), rest=open)
+        w.slide(f"rack_{k_2 + 1}", "body", (0, -1, 0), travel, pivot=middle_2, rest=open * travel)
     w.settle()
 
 
 @kind(
     words="refrigerator, freezer, fridge freezer, icebox, minibar, mini fridge, kitchen fridge, wine cooler",
-    material="metal",
+    carved_from="metal",
     width=length(0.4, 1.5, default=0.6, usual=(0.55, 0.9), help="Outer width."),
     height=length(0.5, 2.4, default=1.7, usual=(1.3, 2.0), help="Outer height."),
     depth=length(0.35, 1.0, default=0.6, usual=(0.5, 0.7), help="Outer depth of the body."),
@@ -289,7 +286,7 @@ def dishwasher(
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
 )
 def fridge(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -368,15 +365,14 @@ def fridge(
         for left, right, bottom, top in fields
     ]
     shelves = [shelf for opening in openings[drawers:] for shelf in shelves_of(opening)]
-    w.body("body", carcass(width, height, depth, openings), shelves)
-    fitting = Fitting(clearance=clearance, grip=handle, rest=open)
+    w.part("body", carcass(width, height, depth, openings), shelves)
     for k, opening in enumerate(openings[:drawers]):
-        add_drawer(w, f"drawer_{k + 1}", "body", opening, fitting)
+        add_drawer(w, f"drawer_{k + 1}", "body", opening, handle=handle, opened=open)
     for k, (field, opening) in enumerate(zip(fields[drawers:], openings[drawers:], strict=True)):
         side = hinge_side if field[1] - field[0] == 1.0 else "left" if field[0] == 0.0 else "right"
         name = f"door_{k + 1}"
-        add_door(w, name, "body", opening, fitting, side=side, hinge=hinge)
-        w.add(name, bins(opening, fitting.clearance))
+        add_door(w, name, "body", opening, side=side, hinge=hinge, handle=handle, opened=open)
+        w.part(name, bins(opening, clearance))
     w.settle()
 
 
@@ -385,7 +381,7 @@ def fridge(
         "washer, tumble dryer, laundry machine, clothes washer, front loading washer, front loading washing "
         "machine, toy washing machine, laundry washer, clothes dryer, tumble drier"
     ),
-    material="metal",
+    carved_from="metal",
     part_words={"door": "round door, porthole"},
     width=length(0.4, 0.9, default=0.6, usual=(0.5, 0.7), help="Outer width."),
     height=length(0.55, 1.2, default=0.85, usual=(0.75, 0.95), help="Outer height."),
@@ -395,7 +391,7 @@ def fridge(
     hinge_side=choice(("left", "right"), help="Of the door."),
 )
 def washing_machine(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -415,7 +411,7 @@ def washing_machine(
     centre = (0.0, 0.5 * (height - strip))
     cavity = cylinder(tub, 0, (wall, depth - wall), centre[1])
     mouth = cylinder(0.72 * tub, 0, (-1.0, 0.5 * depth), centre[1])
-    w.body("body", front - cavity - mouth)
+    w.part("body", front - cavity - mouth)
     # A drum with three ribs on a shaft in the back wall.
     level = centre[1]
     back = depth - wall
@@ -425,12 +421,12 @@ def washing_machine(
     inner = cylinder(radius - 0.004, 0, (0, back - 0.045), level)
     pivot = (0.0, back - 0.02, level)
     boss, hole, rotor = stub(pivot, (0, -1, 0), 0.03, clearance, length=0.022)
-    w.add("body", boss)
+    w.part("body", boss)
     w.cut("body", hole)
     rib = slab(0.012, (start[1] + 0.01, end[1]), (level + 0.75 * radius, level + radius - 0.002))
     ribs = [rib.translate((0, 0, -level)).rotate((0, 120 * k, 0)).translate((0, 0, level)) for k in range(3)]
-    w.body("drum", rotor, cylinder(radius, start, end) - inner, ribs, material="steel")
-    w.turns("drum", "body", (0, -1, 0), pivot)
+    w.part("drum", rotor, cylinder(radius, start, end) - inner, ribs, look="steel")
+    w.spin("drum", "body", (0, -1, 0), pivot)
     # A round door on a barrel hinge beside its rim.
     radius_2 = 0.86 * tub
     level_2 = centre[1]
@@ -444,13 +440,13 @@ def washing_machine(
     on_door = (reach, reach + 0.02, -0.4 * door, 0.4 * door)
     halves = barrel(length, barrel_radius, clearance, (on_body, on_door))
     of_body, of_door = [(half if side < 0 else half.mirror((1, 0, 0))).translate(pivot_2) for half in halves]
-    w.add("body", of_body)
+    w.part("body", of_body)
     disc = cylinder(radius_2, 0, (back_2, front_2), level_2)
     glass = cylinder(0.7 * radius_2, 0, (front_2 - 1.0, front_2 + 0.006), level_2)
     grip_at = -side * 0.88 * radius_2
     grip = box((grip_at - 0.01, front_2 - 0.012, level_2 - 0.05), (grip_at + 0.01, front_2 + 0.001, level_2 + 0.05))
-    w.body("door", disc - glass, of_door, grip)
-    w.turns("door", "body", (0, 0, side), pivot_2, (0.0, 1.9), rest=open)
+    w.part("door", disc - glass, of_door, grip)
+    w.hinge("door", "body", (0, 0, side), pivot_2, 1.9, rest=open * 1.9)
     # From left to right: drawer, knob, buttons.
     level_3 = height - 0.5 * strip
     opening = Bay(
@@ -462,8 +458,8 @@ def washing_machine(
         wall=0.012,
     )
     w.cut("body", room(opening))
-    add_drawer(w, "drawer", "body", opening, Fitting(clearance=clearance, grip="edge", rest=open))
-    with drawn_on(w, clearance, open) as b:
+    add_drawer(w, "drawer", "body", opening, handle="edge", opened=open)
+    with w.fitted(open) as b:
         mechanisms.knob(
             b,
             "knob",
@@ -475,7 +471,7 @@ def washing_machine(
         )
     for k in range(buttons):
         x = (0.17 + 0.3 * (k + 0.5) / buttons) * width
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             button(
                 b, f"button_{k + 1}", "body", (x, 0, level_3), (0.2 * width / buttons - 2 * clearance, 0.014), 0.004, -Y
             )
@@ -485,7 +481,7 @@ def washing_machine(
 @kind(
     words=("strongbox, safe box, money safe, bank safe, office safe, home safe, hotel room safe"),
     usual={"gun safe, wall safe, hotel safe": {"width": 0.4, "depth": 0.4, "height": 0.5}},
-    material="steel",
+    carved_from="steel",
     width=length(0.2, 1.2, default=0.35, usual=(0.28, 0.6), help="Outer width."),
     height=length(0.2, 1.8, default=0.4, usual=(0.28, 0.9), help="Outer height."),
     depth=length(0.2, 1.0, default=0.35, usual=(0.25, 0.5), help="Outer depth of the body."),
@@ -498,7 +494,7 @@ def washing_machine(
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
 )
 def safe(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -512,25 +508,24 @@ def safe(
     """Safes: thick walls, a heavy door with a lever, and a dial or a keypad."""
     its_wall = 2.0 * wall
     opening = Bay(left=-0.5 * width, right=0.5 * width, bottom=0.0, top=height, depth=depth, wall=its_wall)
-    w.body("body", carcass(width, height, depth, [opening]))
-    fitting = Fitting(clearance=clearance, grip="none", rest=open)
-    add_door(w, "door", "body", opening, fitting, side="left", hinge=hinge)
+    w.part("body", carcass(width, height, depth, [opening]))
+    add_door(w, "door", "body", opening, side="left", hinge=hinge, opened=open)
     front = -clearance - its_wall
     size = min(width, height)
     if lock == "dial":
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             knob(b, "dial", "door", (0, front, 0.68 * height), min(0.05, 0.12 * size), -Y)
     else:
         pad = min(0.12, 0.3 * size)
         for k, (x, z) in enumerate(grid(12, 3, (0.75 * pad, pad))):
             cap = 0.2 * pad - 2 * clearance
-            with drawn_on(w, clearance) as b:
+            with w.fitted() as b:
                 button(b, f"button_{k + 1}", "door", (x, front, 0.68 * height + z), (cap, 0.9 * cap), 0.003, -Y)
     # A lever or a wheel of three spokes that draws the bolts.
     place = [0, front, 0.3 * height]
     length = min(0.12, 0.22 * size)
     if handle == "wheel":
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             at, wire, gap = vector(*place), 0.1 * length, b.gap(length)
             level = at - (gap + 3.0 * wire) * Y
             for angle in (0, 2 * pi / 3, 4 * pi / 3):
@@ -541,6 +536,6 @@ def safe(
             b.part("handle", b.cylinder(wire, at + (2.0 * wire - gap) * Y, at - (gap + 0.2 * wire) * Y))
             b.hinge("handle", "door", Y, at, 0.5 * pi)
     else:
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             lever(b, "handle", "door", place, -Y, X, 1.2 * length, reach=-0.5 * pi)
     w.settle()

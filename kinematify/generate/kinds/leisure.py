@@ -6,10 +6,10 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import button, case, crank, knob, wheel
 from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
 
 
@@ -400,7 +400,7 @@ def sash_window(b: ObjectBuilder, width: float, height: float, flat: bool) -> No
             low = (-width / 2 + g, y, z0)
             high = (width / 2 - g, y + 0.035, z1)
         inner = vector(low[0] + 0.05, y + 0.014, low[2] + 0.05), vector(high[0] - 0.05, y + 0.021, high[2] - 0.05)
-        pane = b.painted(box(*inner), material="glass")
+        pane = b.painted(box(*inner), look="glass")
         b.part(f"sash_{k}", box(low, high) - box(inner[0] - Y, inner[1] + Y), pane, look="wood")
         way = (-X if k == 0 else X) if flat else Z if k == 0 else -Z
         b.slide(f"sash_{k}", "frame", way, (width if flat else height) / 2 - 0.05)

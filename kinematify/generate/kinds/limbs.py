@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from manifold3d import Manifold
 
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
 from kinematify.generate.procedural.solids import Point, X, Z, box, cylinder, hull, off, rod, slab, union, vector
-from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -49,7 +49,14 @@ def finger_palm(fingers: int) -> list[Manifold]:
 
 
 def jaws(
-    w: Workshop, clearance: float, frame: FloatArray, palm: str, called: str, half: float, reach: float, rest: float
+    w: ObjectBuilder,
+    clearance: float,
+    frame: FloatArray,
+    palm: str,
+    called: str,
+    half: float,
+    reach: float,
+    rest: float,
 ) -> None:
     """Add two mirrored jaws, `called`_1 and `called`_2, that reach beyond the rail of a palm; zero is shut."""
     inner = _JAW_BAR + clearance
@@ -59,14 +66,19 @@ def jaws(
     jaw = slide + slab((clearance, 0.008), 0.008, (_JAW_LEVEL + 2.9 * _JAW_BAR, _JAW_LEVEL + reach))
     seen = w.from_frame(frame)
     for number, sign, solid in ((1, 1, jaw), (2, -1, jaw.mirror((1, 0, 0)))):
-        seen.body(f"{called}_{number}", solid)
-        seen.slides(
-            f"{called}_{number}", palm, (sign, 0, 0), (0, 0, _JAW_LEVEL), (0.0, half - _JAW_LONG - clearance), rest=rest
+        seen.part(f"{called}_{number}", solid)
+        seen.slide(
+            f"{called}_{number}",
+            palm,
+            (sign, 0, 0),
+            half - _JAW_LONG - clearance,
+            pivot=(0, 0, _JAW_LEVEL),
+            rest=rest * (half - _JAW_LONG - clearance),
         )
 
 
 def fingered(
-    w: Workshop,
+    w: ObjectBuilder,
     clearance: float,
     frame: FloatArray,
     palm: str,
@@ -98,10 +110,10 @@ def fingered(
             name, up = f"{called}_{k + 1}" + (f"_{j + 1}" if j else ""), (0, 0, j * pitch)
             solids = forked, tongue, blade.translate((0, -around, _KNUCKLE)).rotate((0, 0, angle))
             forks, *link = [solid.translate(up) for solid in solids] if j else solids
-            seen.add(parent, forks)
-            seen.body(name, link)
+            seen.part(parent, forks)
+            seen.part(name, link)
             pivot = turn @ (0, -around, _KNUCKLE + j * pitch)
-            seen.turns(name, parent, turn @ X, pivot, (0.0, 1.2), rest=rest)
+            seen.hinge(name, parent, turn @ X, pivot, 1.2, rest=rest * 1.2)
             parent = name
 
 
@@ -166,7 +178,7 @@ def track_top(clearance: float, length: float, width: float) -> float:
     return track_level(length) + clearance + 0.5 * track_ring(length, width)
 
 
-def tracked(w: Workshop, clearance: float, called: str, length: float, width: float, wheels: int) -> None:
+def tracked(w: ObjectBuilder, clearance: float, called: str, length: float, width: float, wheels: int) -> None:
     """Add an undercarriage as the base, with `wheels` that turn on the outside of each track."""
     belt = 0.24 * width
     high = 0.22 * length
@@ -188,7 +200,7 @@ def tracked(w: Workshop, clearance: float, called: str, length: float, width: fl
 
     radius = min(0.36 * high, 0.32 * length / max(wheels, 1))
     places = np.linspace(-0.5, 0.5, wheels) * (length - high) if wheels > 1 else np.zeros(wheels)
-    w.body(called, cross, [belt_of(s * (half - 0.5 * belt)) for s in (-1, 1)])
+    w.part(called, cross, [belt_of(s * (half - 0.5 * belt)) for s in (-1, 1)])
     for side, s in (("left", -1), ("right", 1)):
         for k, y in enumerate(places):
             pivot = vector(s * half, y, 0.5 * high)
@@ -200,16 +212,16 @@ def tracked(w: Workshop, clearance: float, called: str, length: float, width: fl
             ]
             nuts = [cylinder(0.12 * radius, spot, off(spot, s * 0.3 * radius, 0, 0), segments=6) for spot in spots]
             w.cut(called, hole)
-            w.body(f"{side}_wheel_{k + 1}", rotor, nuts, material="steel")
-            w.turns(f"{side}_wheel_{k + 1}", called, (s, 0, 0), pivot)
+            w.part(f"{side}_wheel_{k + 1}", rotor, nuts, look="steel")
+            w.spin(f"{side}_wheel_{k + 1}", called, (s, 0, 0), pivot)
 
 
-def turntable(w: Workshop, clearance: float, called: str, parent: str, length: float, width: float) -> None:
+def turntable(w: ObjectBuilder, clearance: float, called: str, parent: str, length: float, width: float) -> None:
     """Add the ring that turns on an undercarriage without end; its body follows above the `track_top`."""
     ring_ = track_ring(length, width)
     pivot = (0.0, 0.0, track_level(length))
     boss, hole, rotor = stub(pivot, (0, 0, 1), ring_, clearance, length=0.5 * ring_)
-    w.add(parent, boss, cylinder(ring_, (0, 0, 0.6 * 0.22 * length), pivot))
+    w.part(parent, boss, cylinder(ring_, (0, 0, 0.6 * 0.22 * length), pivot))
     w.cut(parent, hole)
-    w.body(called, rotor)
-    w.turns(called, parent, Z, pivot)
+    w.part(called, rotor)
+    w.spin(called, parent, Z, pivot)

@@ -8,10 +8,10 @@ from math import cos, pi, sin
 import numpy as np
 from manifold3d import Manifold
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import arm, button, case, caster, knob, lever, plunger
 from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, slab, vector
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, button, knob
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 
@@ -625,7 +625,6 @@ def work_light(b: ObjectBuilder, height: float) -> None:
 @kind(
     "iris diaphragm",
     words="camera iris, aperture, iris aperture, mechanical iris, iris shutter, aperture diaphragm",
-    material="metal",
     blades=whole(5, 14, default=8, words="blade, leaf, lamella"),
     size=(0.7, 2),
     styles=False,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, length, whole, yes
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, box, slab
 
 
@@ -87,7 +87,6 @@ def floor_hatch(b: ObjectBuilder, width: float, depth: float, high: float, rim: 
     "garden gate",
     words="yard gate, fence gate, side gate, picket gate, wicket gate",
     usual={"double gate, double garden gate": {"leaves": 2, "width": 2.4}},
-    material="wood",
     width=length(0.6, 4, default=1.0, usual=(0.8, 1.4)),
     height=length(0.6, 2, default=1.1, usual=(0.9, 1.4)),
     leaves=whole(1, 2, words="leaf, wing, door"),
@@ -124,7 +123,7 @@ def gate(b: ObjectBuilder, width: float, height: float, leaves: int, pickets: in
     here, level = end - s * 0.16, 0.75 * height + 0.04
     spans = [(x, x + s * 0.02) for x in (here, here + s * 0.12)]
     guides = [slab(span, (-0.055, -0.029), (level - 0.015, level + 0.015)) for span in spans]
-    b.part(last, b.painted(*guides, material="steel"))
+    b.part(last, b.painted(*guides, look="steel"))
     b.part(
         "bolt",
         b.cylinder(0.007, (end + s * 0.05, end - s * 0.2), -0.04, level),

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import button, knob, plunger
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab, vector
 
 
@@ -537,7 +537,7 @@ def foosball_table(b: ObjectBuilder, rods: int, players: int) -> None:
             f"rod_{k + 1}",
             b.cylinder(0.0085, (-0.56, 0.56), at, 0.86),
             b.cylinder(0.016, (0.56, 0.68), at, 0.86),
-            b.painted(*men, material="plastic", color="blue" if k % 2 else "red"),
+            b.painted(*men, look="blue" if k % 2 else "red plastic"),
             look="chrome",
         )
         b.spin(name, f"bumper_{k + 1}", X, (0, at, 0.86))

@@ -9,15 +9,14 @@ import numpy as np
 from manifold3d import Manifold
 
 from kinematify.errors import InputError
-from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import caster
 from kinematify.generate.library.panels import add_door, add_drawer
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.layout import Cell, parse_layout, stacked
 from kinematify.generate.procedural.pieces.bearing_pieces import at, bent_fork, stub
-from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
+from kinematify.generate.procedural.pieces.fronts import Bay, carcass, room
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, slab, union
-from kinematify.generate.procedural.workshop import Workshop
 
 _MOST_STACKS = 5  # of a table, and drawers in one
 
@@ -52,7 +51,7 @@ def drawer_stacks(text: str) -> list[int]:
         "cabinet, kitchen cupboard, display cabinet, office cabinet"
     ),
     title="cabinet or chest",
-    material="wood",
+    carved_from="wood",
     usual={
         "desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer": {
             "width": 0.22,
@@ -197,7 +196,7 @@ def drawer_stacks(text: str) -> list[int]:
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
 )
 def cabinet(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     depth: float,
@@ -209,7 +208,6 @@ def cabinet(
     handle: str,
     hinge: str,
     open: float,
-    clearance: float,
 ) -> None:
     """Cabinets, chests, wardrobes and desks' pedestals: any grid of doors, drawers and open shelves."""
 
@@ -248,16 +246,17 @@ def cabinet(
     cells = parse_layout(layout or default_layout())
     openings = [opening_of(cell) for cell in cells]
     behind = [opening for cell, opening in zip(cells, openings, strict=False) if cell.kind != "panel"]
-    w.body("body", carcass(width, height, depth, behind))
-    fitting = Fitting(clearance=clearance, grip=handle, rest=open)
+    w.part("body", carcass(width, height, depth, behind))
     for k, (cell, opening) in enumerate(zip(cells, openings, strict=False)):
         name = f"{cell.kind}_{sum([other.kind == cell.kind for other in cells[:k]]) + 1}"
         if cell.kind == "door":
             side = side_of(cells, cell)
             outermost = cell.left == 0.0 if side == "left" else cell.right > 1.0 - 1e-09
-            add_door(w, name, "body", opening, fitting, side=side, hinge=hinge if outermost else "edge")
+            add_door(
+                w, name, "body", opening, side=side, hinge=hinge if outermost else "edge", handle=handle, opened=open
+            )
         elif cell.kind == "drawer":
-            add_drawer(w, name, "body", opening, fitting)
+            add_drawer(w, name, "body", opening, handle=handle, opened=open)
     w.settle()
 
 
@@ -287,7 +286,7 @@ def cabinet(
         ): {"width": 1.2, "depth": 0.6, "height": 0.75},
     },
     title="table or desk with drawers",
-    material="wood",
+    carved_from="wood",
     width=length(0.4, 4.0, default=1.2, usual=(0.8, 1.8), help="Outer width."),
     depth=length(0.3, 2.0, default=0.6, usual=(0.45, 0.8), help="Outer depth."),
     height=length(0.5, 1.5, default=0.74, usual=(0.65, 0.95), help="Outer height."),
@@ -301,7 +300,7 @@ def cabinet(
     handle=choice(("bar", "knob", "cup", "edge", "none"), help="What drawers are pulled by."),
 )
 def table(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     depth: float,
     height: float,
@@ -311,7 +310,6 @@ def table(
     layout: str,
     handle: str,
     open: float,
-    clearance: float,
 ) -> None:
     """Tables and desks with drawers: a row under the top, pedestals of stacked drawers at the sides, or both."""
     overhang = 0.03  # of the top on all sides [m]
@@ -371,10 +369,9 @@ def table(
         slab(half, (back - 0.02, back), (under - 0.08, under)),
         *[leg_of(x, y, under) for x in (-half, half - leg) for y in (0.0, back - leg)],
     )
-    w.body("body", body - union(*[room(opening) for opening in openings]))
-    fitting = Fitting(clearance=clearance, grip=handle, rest=open)
+    w.part("body", body - union(*[room(opening) for opening in openings]))
     for k, opening in enumerate(openings):
-        add_drawer(w, f"drawer_{k + 1}", "body", opening, fitting)
+        add_drawer(w, f"drawer_{k + 1}", "body", opening, handle=handle, opened=open)
     w.settle()
 
 
@@ -383,7 +380,7 @@ def table(
         "foldable chair, camping chair, collapsible chair, garden chair, lawn chair, patio chair, fishing chair, "
         "picnic chair, folding seat"
     ),
-    material="wood",
+    carved_from="wood",
     width=length(0.3, 0.7, default=0.44, usual=(0.38, 0.5), help="Outer width."),
     height=length(0.7, 1.2, default=0.84, usual=(0.76, 0.95), help="When folded."),
     seat=length(0.3, 0.5, default=0.44, usual=(0.4, 0.47), help="Level of the seat."),
@@ -393,7 +390,7 @@ def table(
     boards=whole(1, 8, usual=(1, 6), help="Of the seat.", words="board"),
 )
 def folding_chair(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     height: float,
     seat: float,
@@ -423,8 +420,8 @@ def folding_chair(
     def hang_of(name: str, solids: Sequence[Manifold], level: float, opens: float) -> None:
         end = 0.5 * width - 0.35 * rail
         w.cut("frame", bore(pin, clearance, (-end - clearance, 0, level), (end + clearance, 0, level)))
-        w.body(f"{name}", solids, cylinder(pin, (-end, end), 0, level))
-        w.turns(f"{name}", "frame", (1, 0, 0), (0, 0, level), (0.0, opens), rest=open)
+        w.part(f"{name}", solids, cylinder(pin, (-end, end), 0, level))
+        w.hinge(f"{name}", "frame", (1, 0, 0), (0, 0, level), opens, rest=open * opens)
 
     half = 0.5 * width
     thick = 0.5 * rail
@@ -436,7 +433,7 @@ def folding_chair(
         low = height - (k + 1) * pitch
         its_slats = [*its_slats, slab(wide, (thick - 0.001, thick + board), (low + 0.15 * pitch, low + pitch))]
     tie = slab(wide, (-thick - board, 0.001 - thick), (0.1, 0.13))
-    w.body("frame", sides, its_slats, tie)
+    w.part("frame", sides, its_slats, tie)
     # Rear legs between the sides of the frame; they swing back.
     thick_2 = the_half
     pivot = seat - 0.5 * rail - 0.025
@@ -472,9 +469,10 @@ def folding_chair(
     star=length(0.22, 0.42, default=0.3, usual=(0.26, 0.34), help="Length of an arm."),
     wheel=length(0.02, 0.045, default=0.028, usual=(0.022, 0.034), help="Radius."),
     armrests=choice({"armrests": "armrest, arm", "none": "armless"}, help="Beside the seat."),
+    carved_from="plastic",
 )
 def office_chair(
-    w: Workshop,
+    w: ObjectBuilder,
     castors: int,
     width: float,
     depth: float,
@@ -501,11 +499,11 @@ def office_chair(
         w.cut("base", bore(the_spring, clearance, (0, 0, level + 0.01), (0, 0, rim + 0.1), segments=sides))
         boss, hole, rotor = stub((0, 0, top + 0.022), (0, 0, 1), 0.032, clearance, length=0.022)
         rod_ = cylinder(the_spring, level + 0.014, top + 0.001, segments=sides)
-        w.body("lift", rod_, boss, material="steel")
+        w.part("lift", rod_, boss, look="steel")
         w.cut("lift", hole)
-        w.slides("lift", "base", (0, 0, 1), (0, 0, rim), (0.0, travel), rest=open)
-        w.body("seat", rotor)
-        w.turns("seat", "lift", (0, 0, 1), (0, 0, top + 0.022))
+        w.slide("lift", "base", (0, 0, 1), travel, pivot=(0, 0, rim), rest=open * travel)
+        w.part("seat", rotor)
+        w.spin("seat", "lift", (0, 0, 1), (0, 0, top + 0.022))
         return top + 0.044 + clearance
 
     # A bow beside the cushion with a pad on it.
@@ -522,7 +520,7 @@ def office_chair(
     level = wheel / 0.38
     its_column = level + column
     hub = cylinder(0.04, level - 0.005, level + 0.05)
-    w.body("base", hub, cylinder(the_column, level, its_column))
+    w.part("base", hub, cylinder(the_column, level, its_column))
     for k in range(castors):
         # An arm of the star; under its end a fork on a stem that turns, and in the fork a wheel.
         number = k + 1
@@ -535,9 +533,9 @@ def office_chair(
             cylinder(0.022, 0, star, (level, level + 0.045), segments=24),
             cylinder(0.016, level, level + 0.03, segments=24),
         )
-        w.add("base", arm.transform(place))
+        w.part("base", arm.transform(place))
         seen = w.from_frame(place)
-        with drawn_on(seen, clearance) as b:
+        with seen.fitted() as b:
             caster(b, f"wheel_{number}", "base", (0, 0, level), level, fork=f"castor_{number}", deep=0.022)
     # A cushion on a plate, and behind it a bracket with the backrest.
     level_2 = spring(level, its_column)
@@ -548,9 +546,9 @@ def office_chair(
     bracket = slab(0.03, (0.1, behind + fork[1]), (level_2 - 0.01, level_2 + 0.012))
     pivot = (0.0, behind, level_2 + 0.012 + 2.0 * fork[1])
     forked, tongue = bent_fork(pivot, (0.0, 0.0), fork[0], fork[1], clearance)
-    w.add("seat", plate, bracket, forked, hull(*cushion))
+    w.part("seat", plate, bracket, forked, hull(*cushion))
     if armrests == "armrests":
-        w.add("seat", [solid for s in (-1, 1) for solid in armrest(s * (0.5 * width + 0.02), level_2)])
+        w.part("seat", [solid for s in (-1, 1) for solid in armrest(s * (0.5 * width + 0.02), level_2)])
     low = level_2 + seat + 0.05
     rail = slab(0.025, (behind - 0.01, behind + 0.01), (pivot[2] + 0.02, low + 0.5 * back))
     wide = 0.5 * width - 0.05
@@ -559,6 +557,6 @@ def office_chair(
         for s in (-1, 1)
         for z in (low + 0.02, low + back - 0.02)
     ]
-    w.body("back", tongue, rail, hull(*rest))
-    w.turns("back", "seat", (-1, 0, 0), pivot, (0.0, 0.45), rest=open)
+    w.part("back", tongue, rail, hull(*rest))
+    w.hinge("back", "seat", (-1, 0, 0), pivot, 0.45, rest=open * 0.45)
     w.settle()

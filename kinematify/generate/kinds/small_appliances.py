@@ -10,12 +10,12 @@ import numpy as np
 from manifold3d import Manifold
 
 from kinematify.generate.library import mechanisms
-from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import add_door, add_drawer
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.pieces.bearing_pieces import FRONT, BackEdge, add_barrels, at, bent_fork, stub
-from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, room
+from kinematify.generate.procedural.pieces.fronts import Bay, room
 from kinematify.generate.procedural.solids import (
     SEGMENTS,
     Point,
@@ -30,7 +30,6 @@ from kinematify.generate.procedural.solids import (
     union,
     vector,
 )
-from kinematify.generate.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
 @kind(
     walls=8,
     words="bread toaster, pop up toaster, retro toaster, toy toaster",
-    material="metal",
+    carved_from="metal",
     width=length(0.14, 0.5, default=0.19, usual=(0.16, 0.32), help="Outer width."),
     depth=length(0.2, 0.5, default=0.28, usual=(0.24, 0.36), help="Outer depth."),
     height=length(0.15, 0.35, default=0.19, usual=(0.17, 0.24), help="Outer height."),
@@ -49,7 +48,7 @@ if TYPE_CHECKING:
     tray=choice({"tray": "crumb tray", "none": ""}, help="For crumbs."),
 )
 def toaster(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     depth: float,
     height: float,
@@ -68,7 +67,7 @@ def toaster(
     half = 0.5 * width
     round_ = 0.02
     corners = [(s * (half - round_), y) for s in (-1, 1) for y in (round_, depth - round_)]
-    w.body("body", hull(*[cylinder(round_, x, y, (0, height)) for x, y in corners]))
+    w.part("body", hull(*[cylinder(round_, x, y, (0, height)) for x, y in corners]))
     share = (width - 2.0 * round_) / levers
     each = -(-slots // levers)
     for k in range(levers):
@@ -99,10 +98,10 @@ def toaster(
         grip = min(0.014, 0.16 * share)
         its_knob = box((middle - grip, -0.028, level - 0.004), (middle + grip, -0.01, level + 0.009))
         w.cut("body", union(*rooms))
-        w.body(name, bridge, stem, its_knob, plates)
-        w.slides(name, "body", (0, 0, -1), (middle, 0, level), (0.0, level - low), rest=open)
+        w.part(name, bridge, stem, its_knob, plates)
+        w.slide(name, "body", (0, 0, -1), level - low, pivot=(middle, 0, level), rest=open * (level - low))
         if knob == "knob":
-            with drawn_on(w, clearance, open) as b:
+            with w.fitted(open) as b:
                 mechanisms.knob(
                     b,
                     f"knob_{k + 1}",
@@ -124,9 +123,9 @@ def toaster(
             (gap_2 + 0.003 - half_2, front + gap_2 + 0.003, 0.011 + gap_2), (half_2 - gap_2 - 0.003, depth - 0.006, 1.0)
         )
         lip = slab(0.2 * half_2, (depth - 0.003, depth + 0.014), (0.012, 0.02))
-        w.body("tray", outer - inner, lip, material="metal")
+        w.part("tray", outer - inner, lip, look="metal")
         travel = 0.7 * (depth - front)
-        w.slides("tray", "body", (0, 1, 0), (0, depth, 0.016), (0.0, travel), rest=open)
+        w.slide("tray", "body", (0, 1, 0), travel, pivot=(0, depth, 0.016), rest=open * travel)
     w.settle()
 
 
@@ -145,9 +144,10 @@ def toaster(
     buttons=whole(0, 5, usual=(0, 4), help="In a row.", words="key"),
     button=choice(("square", "round"), help="Their shape."),
     hinge=choice(("edge", "barrel"), help="Of the filter: hidden or visible."),
+    carved_from="plastic",
 )
 def coffee_machine(
-    w: Workshop,
+    w: ObjectBuilder,
     width: float,
     depth: float,
     height: float,
@@ -169,7 +169,7 @@ def coffee_machine(
     column = 0.6 * depth
     half = 0.5 * width
     top = height - the_lid
-    w.body(
+    w.part(
         "body",
         slab(half, (0, depth), (0, base)),
         slab(half, (column, depth), (0, top)),
@@ -185,12 +185,12 @@ def coffee_machine(
     w.cut("body", tank, above)
     lid = slab(half_2, (front, depth), (level, height))
     grip = slab(0.1 * width, (front - 0.008, front + 0.01), (level + 0.003, height))
-    w.body("lid", lid, grip)
+    w.part("lid", lid, grip)
     edge = BackEdge(y=depth, level=level, below=0.1, above=the_lid, clearance=clearance)
     pivot = add_barrels(
         w, "lid", parent="body", edge=edge, places=(-0.3 * width, 0.3 * width), length=0.04, radius=the_hinge
     )
-    w.turns("lid", "body", (-1, 0, 0), pivot, (0.0, 1.8), rest=open)
+    w.hinge("lid", "body", (-1, 0, 0), pivot, 1.8, rest=open * 1.8)
     if kind == "filter":
         # A door with the filter's basket behind it; both swing out to the left.
         opening = Bay(
@@ -202,8 +202,7 @@ def coffee_machine(
             wall=wall,
         )
         w.cut("body", room(opening))
-        fitting = Fitting(clearance=clearance, grip="edge", rest=open)
-        add_door(w, "filter", "body", opening, fitting, side="left", hinge=hinge)
+        add_door(w, "filter", "body", opening, side="left", hinge=hinge, handle="edge", opened=open)
         radius = min(0.22 * width, 0.2 * depth)
         bottom = head + wall
         top_2 = opening.top - wall
@@ -212,7 +211,7 @@ def coffee_machine(
             radius - 0.003, (*centre, bottom + 0.003), (*centre, top_2 + 1.0)
         )
         arm = slab(0.02, (-0.5 * wall - clearance, 0.014 + clearance), (bottom, top_2))
-        w.add("filter", cup, arm - cylinder(radius - 0.003, (*centre, bottom + 0.003), (*centre, top_2 + 1.0)))
+        w.part("filter", cup, arm - cylinder(radius - 0.003, (*centre, bottom + 0.003), (*centre, top_2 + 1.0)))
         # A jug on the hot plate, which is drawn out to the front.
         radius_2 = min(0.4 * width, 0.26 * depth)
         level_2 = base + clearance
@@ -228,9 +227,9 @@ def coffee_machine(
                 for z in (level_2 + 0.25 * (top_3 - level_2), top_3 - 0.014)
             ],
         )
-        w.body("jug", glass - hollow, grip_2 - cylinder(radius_2 - 0.002, 0, y, (-1, 1)), material="glass")
-        travel = (0.0, 0.7 * depth)
-        w.slides("jug", "body", (0, -1, 0), (0, y, level_2), travel, rest=open)
+        w.part("jug", glass - hollow, grip_2 - cylinder(radius_2 - 0.002, 0, y, (-1, 1)), look="glass")
+        travel = 0.7 * depth
+        w.slide("jug", "body", (0, -1, 0), travel, pivot=(0, y, level_2), rest=open * travel)
     else:
         # Portafilters that turn in their groups, a steam wand with its knob, and a drip tray.
         share = 0.8 * width / groups
@@ -242,27 +241,27 @@ def coffee_machine(
             x = (k + 0.5) * share - 0.5 * width
             pivot_2 = (x, y_2, head - 0.01)
             boss, hole, rotor = stub(pivot_2, (0, 0, -1), radius_3, clearance, length=0.022)
-            w.add("body", boss)
+            w.part("body", boss)
             w.cut("body", hole)
             level_3 = pivot_2[2] - clearance - 0.014
             grip_3 = rod(0.009, x, (y_2, y_2 - reach_2), level_3)
             spout = cylinder(0.008, x, y_2, (level_3 - 0.02, level_3))
             name = f"portafilter_{k + 1}"
-            w.body(name, rotor, grip_3, spout)
-            w.turns(name, "body", (0, 0, -1), pivot_2, (0.0, turn), rest=open)
+            w.part(name, rotor, grip_3, spout)
+            w.hinge(name, "body", (0, 0, -1), pivot_2, turn, rest=open * turn)
         x = 0.42 * width
         pivot_2 = (x, 0.15 * depth, head - 0.006)
         boss, hole, rotor = stub(pivot_2, (0, 0, -1), 0.009, clearance, length=0.012)
-        w.add("body", boss)
+        w.part("body", boss)
         w.cut("body", hole)
         start = (*pivot_2[:2], pivot_2[2] - clearance - 0.009)
         tip = (x, 0.15 * depth - 0.04, base + 0.35 * (head - base))
-        w.body("steam_wand", rotor, rod(0.004, start, tip))
-        w.turns("steam_wand", "body", (0, 0, 1), pivot_2, (0.0, 0.9), rest=open)
+        w.part("steam_wand", rotor, rod(0.004, start, tip))
+        w.hinge("steam_wand", "body", (0, 0, 1), pivot_2, 0.9, rest=open * 0.9)
         opening_2 = Bay(left=-0.5 * width, right=0.5 * width, bottom=0.0, top=base, depth=0.58 * depth, wall=wall)
         w.cut("body", room(opening_2))
-        add_drawer(w, "drip_tray", "body", opening_2, Fitting(clearance=clearance, grip="edge", rest=open))
-        with drawn_on(w, clearance) as b:
+        add_drawer(w, "drip_tray", "body", opening_2, handle="edge", opened=open)
+        with w.fitted() as b:
             knob(b, "knob", "body", [x, 0, 0.5 * (head + height - the_lid)], min(0.018, 0.07 * width), -Y)
     # In a row: on the base under a jug, else on the head.
     low = kind == "filter"
@@ -270,7 +269,7 @@ def coffee_machine(
     for k_2 in range(buttons):
         x_2 = (0.7 * (k_2 + 0.5) / buttons - (0.35 if low else 0.45)) * width
         cap = min(0.016, 0.5 * width / buttons - 2.0 * clearance)
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             mechanisms.button(
                 b,
                 f"button_{k_2 + 1}",
@@ -296,9 +295,10 @@ def coffee_machine(
     span=length(0.6, 2.5, default=1.2, usual=(0.9, 1.4), help="Of a ceiling fan's blades."),
     height=length(0.3, 1.8, default=0.5, usual=(0.4, 1.2), help="Of the whole; a box fan's follows from its diameter."),
     buttons=whole(0, 4, default=0, help="None: a knob.", words="key"),
+    carved_from="plastic",
 )
 def fan(
-    w: Workshop,
+    w: ObjectBuilder,
     kind: str,
     blades: int,
     diameter: float,
@@ -334,10 +334,10 @@ def fan(
         blade = (hull(*ends) + slab((0, root[0]), root[1], 0.0015)).rotate((pitch, 0, 0))
         blades_2 = [blade.translate((0, 0, level)).rotate((0, 0, 360.0 * k / count)) for k in range(count)]
         cap = cylinder(0.9 * hub, clearance + 0.001, front)
-        w.add(f"{parent}", boss.transform(place))
+        w.part(f"{parent}", boss.transform(place))
         w.cut(f"{parent}", hole.transform(place))
-        w.body("rotor", union(rotor, cap, *blades_2).transform(place))
-        w.turns("rotor", f"{parent}", place[:, 2], place[:, 3])
+        w.part("rotor", union(rotor, cap, *blades_2).transform(place))
+        w.spin("rotor", f"{parent}", place[:, 2], place[:, 3])
 
     # Rods behind and before the blades, and a rim around them.
     def cage(radius: float, motor: float, front: float) -> Manifold:
@@ -359,10 +359,10 @@ def fan(
         for k in range(max(count, 1)):
             where = (place[0] + 0.021 * (k - 0.5 * (max(count, 1) - 1)), *place[1:])
             if count:
-                with drawn_on(w, clearance) as b:
+                with w.fitted() as b:
                     button(b, f"button_{k + 1}", "base", where, (0.013, 0.012), 0.004, Z)
             else:
-                with drawn_on(w, clearance, open) as b:
+                with w.fitted(open) as b:
                     knob(b, "knob", "base", where, 0.016, Z, reach=4.7)
 
     if kind == "stand":
@@ -374,34 +374,34 @@ def fan(
         axle = max(height - radius - 0.016, 1.2 * radius + 0.09, lift + 0.11)
         tilt = vector(0.0, 0.0, axle - lift)
         swing = (0.0, 0.0, tilt[2] - 0.042)
-        w.body("base", cylinder(foot, 0, 0.025), cylinder(0.014, (0, 0, 0.02), swing))
+        w.part("base", cylinder(foot, 0, 0.025), cylinder(0.014, (0, 0, 0.02), swing))
         boss, hole, rotor = stub(swing, (0, 0, 1), 0.018, clearance, length=0.015)
-        w.add("base", boss)
+        w.part("base", boss)
         w.cut("base", hole)
         forked, tongue = bent_fork(tilt, (0.0, 0.0), fork[0], fork[1], clearance)
-        w.body("yoke", rotor, forked)
-        w.turns("yoke", "base", (0, 0, 1), swing, (-0.8, 0.8), rest=open)
+        w.part("yoke", rotor, forked)
+        w.hinge("yoke", "base", (0, 0, 1), swing, 0.8, -0.8, rest=open * 0.8)
         front = -0.5 * radius - 0.03
         housing = cylinder(motor, 0, (0.03, front), axle)
         neck = slab(0.008, 0.01, (tilt[2] + 0.015, axle))
-        w.body("head", tongue, neck, housing)
-        w.turns("head", "yoke", (-1, 0, 0), tilt, (-0.3, 0.3), rest=open)
+        w.part("head", tongue, neck, housing)
+        w.hinge("head", "yoke", (-1, 0, 0), tilt, 0.3, -0.3, rest=open * 0.3)
         place = at((0, front, axle), FRONT)
         rotor_of("head", place, radius)
-        w.add("head", cage(radius, motor, blades_of(radius)[2]).transform(place))
+        w.part("head", cage(radius, motor, blades_of(radius)[2]).transform(place))
         controls((0.0, -0.6 * foot, 0.025), 0.018)
     elif kind == "ceiling":
         # A canopy, a rod and a motor with the rotor below.
         radius_2 = 0.5 * span
         level = blades_of(radius_2)[2] + 0.004
-        w.body(
+        w.part(
             "base",
             cylinder(0.075, height - 0.05, height),
             cylinder(0.012, level, height - 0.04),
             cylinder(0.09, level, level + 0.09),
         )
         rotor_of("base", at((0, 0, level), down), radius_2)
-        w.add("rotor", cylinder(0.02, 0, 0.005))
+        w.part("rotor", cylinder(0.02, 0, 0.005))
     elif kind == "box":
         # A square duct with bars behind and in front of the blades.
         radius_3 = 0.5 * diameter
@@ -409,7 +409,7 @@ def fan(
         motor_2 = max(0.03, 0.22 * radius_3)
         back = 0.06
         centre = (0.0, back, half)
-        w.body("base", cylinder(motor_2, (0, back + 0.03, half), centre))
+        w.part("base", cylinder(motor_2, (0, back + 0.03, half), centre))
         rotor_of("base", at(centre, FRONT), radius_3)
         front_2 = back - blades_of(radius_3)[2] - 0.02
         duct = slab(half, (front_2, back + 0.05), (0, 2 * half))
@@ -420,7 +420,7 @@ def fan(
             bars = [*bars, box((x - 0.003, front_2, 0.005), (x + 0.003, front_2 + 0.006, 2 * half - 0.005))]
             bars = [*bars, box((x - 0.003, back + 0.01, 0.005), (x + 0.003, back + 0.018, 2 * half - 0.005))]
         bars = [*bars, box((0.005 - half, back + 0.01, half - 0.004), (half - 0.005, back + 0.018, half + 0.004))]
-        w.add("base", duct, bars)
+        w.part("base", duct, bars)
         controls((0.0, back + 0.03, 2.0 * half), 0.009)
     w.settle()
 
@@ -431,7 +431,7 @@ def fan(
         "drawing lamp, drafting lamp, led lamp, piano lamp, anglepoise lamp, workshop lamp, table light, reading "
         "light, bedside light"
     ),
-    material="metal",
+    carved_from="metal",
     part_words={"arm": "arm segment, segment"},
     joints=whole(
         1, 4, default=3, help="Hinges; the fourth lets the post turn.", words="joint, hinge, degree of freedom, dof"
@@ -442,7 +442,7 @@ def fan(
     switch=choice(("none", "button", "knob"), help="On the base."),
 )
 def desk_lamp(
-    w: Workshop, joints: int, arm: float, base: float, shade: float, switch: str, open: float, clearance: float
+    w: ObjectBuilder, joints: int, arm: float, base: float, shade: float, switch: str, open: float, clearance: float
 ) -> None:
     """Desk lamps: arms on pins one after the other, and a shade at the end."""
     # the_leans: Of the post, the arms and the head's neck, from the upright towards the front [rad]; by hinges.
@@ -462,43 +462,44 @@ def desk_lamp(
         return [solid.translate((0, 0, 0.01)).rotate((degrees(lean), 0, 0)).translate(neck) for solid in made]
 
     hinges = min(joints, 3)
-    w.body("base", cylinder(base, 0, 0.02), cylinder(0.6 * base, 0.019, 0.028))
+    w.part("base", cylinder(base, 0, 0.02), cylinder(0.6 * base, 0.019, 0.028))
     # A button or a knob in front of the post.
     place = (0, -0.8 * base, 0.02)
     if switch == "button":
-        with drawn_on(w, clearance) as b:
+        with w.fitted() as b:
             button(b, "button", "base", place, (0.016, 0.012), 0.004, Z)
     elif switch == "knob":
-        with drawn_on(w, clearance, open) as b:
+        with w.fitted(open) as b:
             knob(b, "knob", "base", place, 0.12 * base, Z, reach=4.7)
     parent = "base"
     pivot = vector(0.0, 0.0, 0.08 if hinges > 1 else 0.03 + 0.8 * arm)
     if joints > hinges:
         boss, hole, rotor = stub((0, 0, 0.045), (0, 0, 1), 0.016, clearance, length=0.018)
-        w.add("base", boss)
+        w.part("base", boss)
         w.cut("base", hole)
         parent = "post"
-        w.body(parent, rotor)
-        w.turns(parent, "base", (0, 0, 1), (0, 0, 0.045), (-2.5, 2.5))
+        w.part(parent, rotor)
+        w.hinge(parent, "base", (0, 0, 1), (0, 0, 0.045), 2.5, -2.5)
         pivot = pivot + vector(0.0, 0.0, 0.02)
         start = (0.0, 0.0, 0.06)
     else:
         start = (0.0, 0.0, 0.02)
-    w.add(parent, cylinder(0.9 * radius, start, pivot - (0.0, 0.0, 2.0 * radius)))
+    w.part(parent, cylinder(0.9 * radius, start, pivot - (0.0, 0.0, 2.0 * radius)))
     leans = the_leans[hinges]
     for k in range(hinges):
         last = k + 1 == hinges
         forked, tongue = bent_fork(pivot, (leans[k], leans[k + 1]), 0.026, radius, clearance)
-        w.add(parent, forked)
+        w.part(parent, forked)
         along = vector(0.0, -sin(leans[k + 1]), cos(leans[k + 1]))
         end = pivot + (0.02 + shade if last else arm) * along
         begin = pivot + 1.6 * radius * along
         stop = end - (0.0 if last else 2.0 * radius) * along
         name = "head" if last else f"arm_{k + 1}"
-        w.body(name, tongue, rod(0.55 * radius, begin, stop))
+        w.part(name, tongue, rod(0.55 * radius, begin, stop))
         if last:
-            w.add(name, shade_of(end, leans[k + 1] + 0.5 * pi))
-        w.turns(name, parent, (-1, 0, 0), pivot, swings[hinges - 1 - k], rest=open)
+            w.part(name, shade_of(end, leans[k + 1] + 0.5 * pi))
+        least, most = swings[hinges - 1 - k]
+        w.hinge(name, parent, (-1, 0, 0), pivot, most, least, rest=open * most)
         parent = name
         pivot = end
     w.settle()

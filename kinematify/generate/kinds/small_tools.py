@@ -6,8 +6,8 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import choice, kind, length, share, whole
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, prism, slab, strip, vector
 
 
@@ -17,7 +17,6 @@ from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, pris
         "scissors, craft scissors, kids scissors, herb scissors, office scissors, fabric scissors"
     ),
     title="pair of scissors",
-    material="steel",
     length=length(0.08, 0.35, default=0.18, usual=(0.12, 0.25), help="Over all."),
     blade=share(0.35, 0.65, usual=(0.42, 0.58), help="Share of the length."),
     thick=length(0.002, 0.004, default=0.0025, usual=(0.002, 0.003), help="Of a blade."),
@@ -75,7 +74,6 @@ def scissors(b: ObjectBuilder, length: float, blade: float, thick: float, loops:
         "nose pliers, electrician pliers, needle nose pliers"
     ),
     title="pair of pliers",
-    material="steel",
     length=length(0.1, 0.4, default=0.18, usual=(0.13, 0.25), help="Over all."),
     thick=length(0.006, 0.02, default=0.01, usual=(0.008, 0.014), help="Of a lever."),
     jaws=choice(
@@ -142,7 +140,6 @@ def pliers(b: ObjectBuilder, length: float, thick: float, jaws: str, grips: str)
 
 @kind(
     words="desk stapler, office stapler, toy stapler, booklet stapler",
-    material="metal",
     length=length(0.08, 0.3, default=0.15, usual=(0.11, 0.2), help="Of the base."),
     width=length(0.026, 0.06, default=0.036, usual=(0.03, 0.045), help="At the ears."),
     cover=length(0.006, 0.016, default=0.01, usual=(0.008, 0.013), help="Height of the arm."),
@@ -426,7 +423,7 @@ def secateurs(b: ObjectBuilder, length: float) -> None:
         z = 0.0175 * k
         grip = [(-s * 0.05, -0.18, 0.028), (-s * 0.075, -0.4, 0.032), (-s * 0.06, -0.62, 0.028)]
         tang = p.strip([(0, 0, 0.06), (-s * 0.05, -0.2, 0.025)], z, z + 0.015)
-        handle = b.workshop.painted(*p.strip(grip, -0.015, 0.045))
+        handle = b.painted(*p.strip(grip, -0.015, 0.045))
         b.part(f"blade_{k + 1}", p.strip(jaw, z, z + 0.015), tang, handle, look="steel")
     b.part("blade_1", p.cylinder(0.02, 0, 0.04), p.cylinder(0.035, 0.036, 0.046))
     b.cut("blade_2", b.cylinder(0.02 * length + 1.5 * b.gap(0.02 * length), -1, 1))

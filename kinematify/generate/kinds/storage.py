@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.panels import carcass, rack
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 
 
 @kind(

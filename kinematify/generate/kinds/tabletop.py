@@ -7,9 +7,9 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from kinematify.generate.library.builder import ObjectBuilder
 from kinematify.generate.library.kind import kind
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.solids import X, Y, Z, slab, vector
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind
 from kinematify.generate.library.mechanisms import wheel
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, slab, vector
 
 

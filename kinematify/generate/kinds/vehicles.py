@@ -8,10 +8,10 @@ from math import cos, pi, sin
 import numpy as np
 from manifold3d import Manifold
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole, yes
 from kinematify.generate.library.mechanisms import case, caster, rotor, wheel
 from kinematify.generate.library.panels import grip, leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import Point, X, Y, Z, beam, block, box, slab, vector
 
 
@@ -20,7 +20,7 @@ def _windows(d: ObjectBuilder, lower: Point, upper: Point) -> Sequence[Manifold]
     low, high = np.array(lower), np.array(upper)
     edge = 0.1 * (high - low) * (1, 1, 0)
     bands = [box(low + edge * a - 0.005 * b, high - edge * a + 0.005 * b) for a, b in ((Y, X), (X, Y))]
-    return d.painted(*bands, material="plastic", color="black")
+    return d.painted(*bands, look="black plastic")
 
 
 def axles(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import choice, kind, whole
 from kinematify.generate.library.mechanisms import caster, in_fork, legs, wheel
 from kinematify.generate.library.panels import leaf, seam
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, box, slab
 
 

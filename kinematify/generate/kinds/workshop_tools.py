@@ -6,10 +6,10 @@ from math import cos, sin
 
 from manifold3d import Manifold
 
-from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.kind import kind, whole
 from kinematify.generate.library.mechanisms import bail, caster, crank, knob, lever, wheel
 from kinematify.generate.library.panels import leaf
+from kinematify.generate.procedural.builder import ObjectBuilder, spread
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, slab
 
 

@@ -8,9 +8,9 @@ def moka_pot(b: ObjectBuilder, radius: float, height: float) -> None:
     b.hinge("lid", "pot", -X, (0, radius, height + 0.001), 1.7)
 ```
 
-The name of the function is the name of the kind, less a ``_`` at its end; two numbers bound a length. A function whose
-first parameter is a `Workshop` carves instead: what it adds and cuts takes effect at once. Whether it names `open` or
-`clearance` besides its parameters decides if it is given them.
+The name of the function is the name of the kind, less a ``_`` at its end; two numbers bound a length. Whether it
+names `open` or `clearance` besides its parameters decides if it is given them. Where the object is `carved_from` a
+material, what the function adds and cuts takes effect at once, and it ends with `settle`.
 """
 
 from __future__ import annotations
@@ -18,26 +18,19 @@ from __future__ import annotations
 import difflib
 import math
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from kinematify.errors import InputError
-from kinematify.generate.library.builder import CAREFUL, ObjectBuilder
-from kinematify.generate.procedural.blueprint import parents_first
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.mesh_styles import STYLES
 from kinematify.generate.procedural.parameter import Parameter, details_of, phrases
-from kinematify.generate.procedural.solids import SEGMENTS
-from kinematify.generate.procedural.workshop import STYLES, Workshop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from manifold3d import Manifold
-
-    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.builder import ObjectBuilder
     from kinematify.generate.procedural.parameter import Value, Words
-    from kinematify.generate.procedural.workshop import Look
 
 MODELING: dict[str, dict[str, Any]] = {
     "careful": {},
@@ -68,10 +61,10 @@ class Kind:
     """How people call it, singular."""
     parameters: tuple[Parameter, ...]
     """Besides those that every kind has, see `COMMON`."""
-    make: Callable[[Workshop, Mapping[str, Value], np.random.Generator | None], None]
-    """Adds bodies and joints to the workshop, with values of all parameters; nothing is drawn without a generator."""
-    material: str = "wood"
-    """Of its base, if nothing is asked for."""
+    make: Callable[[ObjectBuilder, Mapping[str, Value]], None]
+    """Adds parts and joints to the builder, with values of all parameters."""
+    carved_from: str = ""
+    """Material of parts that name none, if nothing is asked for, where cuts take effect at once."""
     walls: float | None = None
     """Mass of the walls of what is hollow [kg/m^2]: thin sheet has 5, armour 700; as configured if None."""
     usual: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
@@ -91,59 +84,6 @@ class Kind:
     def all_parameters(self) -> tuple[Parameter, ...]:
         """Its own and the common ones."""
         return (*self.parameters, *COMMON)
-
-
-_NOT_DRAWN = ("material", "color")
-
-
-def built(kind: Kind, given: Mapping[str, Value], *, seed: int | None = None, name: str = "") -> Blueprint:
-    """Build an object of a kind.
-
-    Args:
-        kind: What to build.
-        given: Parameter -> value in metres, radians, counts or words; others take their default, or what the seed
-            draws from their usual range.
-        seed: Draws what is not given; none takes the defaults.
-        name: Of the object; the kind's if empty.
-
-    Raises:
-        InputError: A parameter is unknown or out of its bounds; the message names the nearest or the bounds.
-    """
-    rng = np.random.default_rng(seed)
-    asked = {key: checked(kind, key, value) for key, value in given.items()}
-    values = {p.name: _drawn(p, rng) if seed is not None and p.drawn else p.default for p in kind.all_parameters}
-    values.update(asked)
-    workshop = Workshop(
-        kind.name,
-        material=str(values["material"]) or kind.material,
-        color=str(values["color"]) or None,
-        handles=(str(values["handle_material"]), str(values["handle_color"]) or None),
-        walls=kind.walls,
-    )
-    kind.make(workshop, values, None if seed is None else rng)
-    if not workshop.moves:
-        counts = ", ".join(p.name for p in kind.parameters if isinstance(p.default, int))
-        raise InputError(f"Nothing of this {kind.title} would move. Ask for one of {counts} at least.")
-    return workshop.finish(
-        name or kind.name,
-        {"seed": seed, **values},
-        style=str(values["style"]),
-        clearance=float(values["clearance"]),
-        rng=np.random.default_rng(seed),
-    )
-
-
-def _drawn(parameter: Parameter, rng: np.random.Generator) -> Value:
-    """Draw a value; always the same number of draws, so that giving one parameter does not change the others."""
-    share = float(rng.random())
-    if parameter.choices and parameter.name not in _NOT_DRAWN:
-        return parameter.choices[int(share * len(parameter.choices))]
-    if parameter.usual is None:
-        return parameter.default
-    low, high = parameter.usual
-    if isinstance(parameter.default, int):
-        return int(low) + int(share * (int(high) - int(low) + 1))
-    return low + share * (high - low)
 
 
 def checked(kind: Kind, name: str, value: Any) -> Value:
@@ -269,7 +209,7 @@ def kind(
     words: str = "",
     title: str = "",
     like: str = "",
-    material: str = "plastic",
+    carved_from: str = "",
     part_words: Mapping[str, Words] | None = None,
     details: Mapping[str, int] | None = None,
     usual: Mapping[str, Mapping[str, Value]] | None = None,
@@ -284,11 +224,11 @@ def kind(
         words: Other names, split at their commas, besides those of `usual`.
         title: A few words for lists; `called` if empty.
         like: The kind that it is another way to build, which `all_kinds` leaves out; empty of a kind of its own.
-        material: Of its base.
+        carved_from: Of `Kind`.
         part_words: Name of a part without its number -> how else people call it.
         details: Word for what belongs to a part -> how many of it there are.
         usual: Names, split at their commas -> what is usual of those that are called so.
-        styles: It may be modelled in any of `MODELING`; of what is drawn alone.
+        styles: It may be modelled in any of `MODELING`; of what is not carved alone.
         walls: Of `Kind`.
         parameters: What may be asked for, under its name; two numbers bound a length.
     """
@@ -303,7 +243,6 @@ def kind(
             raise ValueError(f"two kinds are called {name}")
         code = draw.__code__
         taken = code.co_varnames[1 : code.co_argcount]
-        carves = draw.__annotations__[code.co_varnames[0]] == "Workshop"
         modeling = choice(tuple(MODELING), help="How it is modelled.", drawn=False)
         KINDS[name] = Kind(
             name=name,
@@ -312,73 +251,35 @@ def kind(
             parameters=(
                 *asked,
                 *details_of(details or {}),
-                *([replace(modeling, name="modeling")] if styles and not carves else ()),
+                *([replace(modeling, name="modeling")] if styles and not carved_from else ()),
             ),
-            make=_carver(draw, taken) if carves else _drawer(draw, taken, name),
-            material=material,
+            make=partial(_made, draw, taken, bool(carved_from)),
+            carved_from=carved_from,
             walls=walls,
             usual=usually,
             part_words={part: phrases(said) for part, said in (part_words or {}).items()},
             like=like,
             about=draw.__doc__ or "",
             module=draw.__module__.rpartition(".")[2],
-            draw=draw if styles and not carves else None,
+            draw=draw if styles and not carved_from else None,
         )
         return draw
 
     return register
 
 
-def _carver(draw: Callable[..., None], taken: Sequence[str]) -> Callable[..., None]:
-    def make(workshop: Workshop, values: Mapping[str, Value], _: np.random.Generator | None) -> None:
-        draw(workshop, **{name: values[name] for name in taken})
-
-    return make
-
-
-def _drawer(draw: Callable[..., None], taken: Sequence[str], name: str) -> Callable[..., None]:
-    def make(workshop: Workshop, values: Mapping[str, Value], rng: np.random.Generator | None) -> None:
-        differs = MODELING[str(values["modeling"])] if "modeling" in values else {"sides": SEGMENTS}
-        style = replace(CAREFUL, **{"gap": float(values["clearance"]), **differs})
-        carry_out(draw, ObjectBuilder(name, style, workshop, rng), {key: values[key] for key in taken}, values)
-
-    return make
-
-
-def carry_out(
-    draw: Callable[..., None], builder: ObjectBuilder, given: Mapping[str, Value], values: Mapping[str, Value]
+def _made(
+    draw: Callable[..., None], taken: Sequence[str], carves: bool, builder: ObjectBuilder, values: Mapping[str, Value]
 ) -> None:
-    """Draw an object with what is given, and put it together in the workshop of the builder.
+    """Draw an object with those of the values that are taken.
 
     Raises:
         InputError: It cannot be built.
     """
-    switched = {name: value == "yes" if value in ("yes", "no") else value for name, value in given.items()}
+    given = {name: values[name] for name in taken}
     try:
-        draw(builder, **switched)
-        solids = builder.solids()
+        draw(builder, **{name: value == "yes" if value in ("yes", "no") else value for name, value in given.items()})
+        if not carves:
+            builder.arrange(str(values["material"]), str(values["color"]), float(values["open"]))
     except ValueError as error:
-        raise InputError(f"The object {builder.name} cannot be built: {error}.") from error
-    put_together(builder.workshop, solids, builder.looks, builder.joints, values)
-    for loop in builder.loops:
-        builder.workshop.closes(*loop)
-
-
-def put_together(
-    workshop: Workshop,
-    solids: Mapping[str, Manifold],
-    looks: Mapping[str, Look],
-    joints: Sequence[BlueprintJoint],
-    values: Mapping[str, Value],
-) -> None:
-    """Add parts and joints to a workshop; joints stand at their `value` unless they are to be open.
-
-    The base link takes the material and the colour that are asked for, and so does what looks like it.
-    """
-    base = looks[next(iter(solids))]
-    for name, solid in solids.items():
-        material, color = looks[name]
-        asked = (str(values["material"]), str(values["color"])) if looks[name] == base else ("", "")
-        workshop.body(name, solid, material=None if asked[0] else material, color=asked[1] or color)
-    for joint in parents_first(joints):
-        workshop.add_joint(joint, float(values["open"]))
+        raise InputError(f"The object {builder.family} cannot be built: {error}.") from error

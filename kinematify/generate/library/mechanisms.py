@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, rounded_block
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, point, rounded_block
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.builder import ObjectBuilder
     from kinematify.generate.procedural.solids import Point
     from kinematify.robot.arrays import FloatArray
 
@@ -30,7 +30,7 @@ def case(
     material: str = "wood",
 ) -> None:
     """A block, or for those who model walls a hollow box, open where `opening` points to."""
-    low, high = np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
+    low, high = point(lower), point(upper)
     size = high - low
     thick = wall or 0.06 * float(size.min())
     whole = rounded_block(size, 0.15 * thick).translate(0.5 * (low + high)) if d.style.rounded else box(low, high)
@@ -63,7 +63,7 @@ def wheel(
     material: str = "rubber",
 ) -> None:
     """A wheel that spins about `out`; `axle` is how far the parent lies behind its inner face [m]."""
-    at = np.asarray(middle, dtype=np.float64)
+    at = point(middle)
     inner, outer = at - 0.5 * wide * out, at + 0.5 * wide * out
     if d.style.wheel == "disc":
         d.part(name, d.cylinder(radius, inner, outer), look=material)
@@ -122,7 +122,7 @@ def knob(
         deep: How far its shaft reaches into what carries it [m]; by 0.6 of its height if None.
         material: Of the knob.
     """
-    at, high = np.asarray(at, dtype=np.float64), high or 0.7 * radius
+    at, high = point(at), high or 0.7 * radius
     gap = d.gap(radius)
     foot = at + (gap - d.style.max_penetration * high) * out
     top = at + high * out
@@ -170,7 +170,7 @@ def button(
     material: str = "plastic",
 ) -> None:
     """A button of a width and a height that stands out of a surface and is pressed in."""
-    at = np.asarray(at, dtype=np.float64)
+    at = point(at)
     gap = d.gap(min(size))
     deep = 0.8 * high if d.style.has_bore else d.style.max_penetration * high
     low, high_end = at + (0.0 if deep else gap) * out - deep * out, at + high * out
@@ -214,7 +214,7 @@ def lever(
         through: Thickness of a leaf that it goes through, with another bar behind it [m].
         material: Of the lever.
     """
-    at, direction = np.asarray(at, dtype=np.float64), np.asarray(along, dtype=np.float64)
+    at, direction = point(at), point(along)
     thick = 0.12 * length
     gap, far = d.gap(thick), d.draw(1.0, 2.0) * thick
     bar = d.pick(d.rod, d.cylinder)
@@ -254,7 +254,7 @@ def arm(
         side: How far beside the plane of the joint it lies, along the axis [m]; careful hands lay it beside its parent.
     """
     beside = (thick + d.gap(thick) if d.style.has_bore else 0.0) if side is None else side
-    a, b = np.asarray(start, dtype=np.float64) + beside * axis, np.asarray(end, dtype=np.float64) + beside * axis
+    a, b = point(start) + beside * axis, point(end) + beside * axis
     half = 0.5 * thick * axis
     kind = d.pick("beam", "beam", "rod", "plate")
     if kind == "rod" and not d.style.has_bore:
@@ -288,7 +288,7 @@ def plunger(
 
     `start` lies outside and `end` inside; positive motion draws it out.
     """
-    a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    a, b = point(start), point(end)
     out = (a - b) / float(np.linalg.norm(a - b))
     gap = d.gap(radius)
     d.part(name, d.cylinder(radius, a, b), look="metal")
@@ -308,7 +308,7 @@ def rotor(
     wide: float = 0.15,
 ) -> None:
     """Blades about a hub in front of a surface."""
-    at = np.asarray(at, dtype=np.float64)
+    at = point(at)
     hub = 0.14 * radius
     gap = d.gap(hub)
     foot = at + (gap - d.style.max_penetration * hub) * out
@@ -346,7 +346,7 @@ def caster(
         fork: Name of the fork; the wheel's with ``_fork`` if None.
         deep: How far its stem reaches up [m]; by 0.3 of its height if None.
     """
-    at = np.asarray(top, dtype=np.float64)
+    at = point(top)
     radius, deep = 0.38 * high, deep or 0.3 * high
     wide = 0.5 * radius
     axle = at + np.array([0.4 * radius, 0.0, -(high - radius)])
@@ -383,7 +383,7 @@ def crank(
     spins: bool = True,
 ) -> None:
     """A shaft out of a surface, an arm across and a grip, which may turn by itself."""
-    at = np.asarray(at, dtype=np.float64)
+    at = point(at)
     thick = 0.1 * length
     along = np.roll(out, 1)
     level = at + 0.35 * length * out
@@ -421,7 +421,7 @@ def bail(
     upper: float = 1.5,
 ) -> None:
     """A bow over the line from `start` to `end`, about which it swings."""
-    a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    a, b = point(start), point(end)
     along = (b - a) / float(np.linalg.norm(b - a))
     gap = d.gap(thick)
     a, b = a - (0.5 * thick + gap) * along, b + (0.5 * thick + gap) * along
@@ -445,7 +445,7 @@ def bail(
 
 def in_fork(d: ObjectBuilder, name: str, parent: str, middle: Point, radius: float, wide: float, top: float) -> None:
     """A wheel about x between two cheeks of its parent that come down from a height, without an axle."""
-    at = np.asarray(middle, dtype=np.float64)
+    at = point(middle)
     play = max(d.pick(d.style.gap, 0.1 * wide, 0.3 * wide), 0.0005)
     sheet = d.draw(0.15, 0.4) * wide
     length = d.draw(0.3, 0.6) * radius

@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from manifold3d import Manifold
 
-from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, point
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.generate.library.builder import ObjectBuilder
-    from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
+    from kinematify.generate.procedural.builder import ObjectBuilder
+    from kinematify.generate.procedural.pieces.fronts import Bay
     from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
 
 _RIM = 0.75  # height of a drawer's sides, share of the bay's
@@ -90,7 +88,7 @@ def grip(
     """
     if d.style.grips == "none" or kind == "none":
         return
-    at = np.asarray(at, dtype=np.float64) - (0.0 if d.style.grips == "apart" else 1e-3) * out
+    at = point(at) - (0.0 if d.style.grips == "apart" else 1e-3) * out
     kind = kind or d.pick("bar", "bar", "block", "rod", "edge", "stub", "knob", "plate")
     thick, half = min(0.12 * length, d.pick(0.016, 0.03)), 0.5 * length * along
     high = d.draw(1.5, 3.0) * thick
@@ -117,7 +115,7 @@ def grip(
     if d.style.grips == "apart":
         d.fix(d.part(f"{on}_grip", *shapes, look="metal"), on)
     else:
-        d.part(on, *d.workshop.painted(*shapes))
+        d.part(on, *d.painted(*shapes))
 
 
 def leaf(
@@ -271,7 +269,7 @@ def filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out: 
     if d.style.grips == "apart" and d.maybe():
         d.fix(d.part(f"{name}_pane", glass, look="glass"), name)
     else:
-        d.part(name, *d.painted(glass, material="glass"))
+        d.part(name, *d.painted(glass, look="glass"))
 
 
 def drawer(
@@ -368,52 +366,64 @@ def rack(d: ObjectBuilder, name: str, parent: str, lower: Point, upper: Point, *
     d.slide(name, parent, -Y, travel * float(size[1]))
 
 
-def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
+def add_drawer(
+    b: ObjectBuilder, name: str, parent: str, opening: Bay, *, handle: str = "none", opened: float = 0.0
+) -> None:
     """Add a drawer that runs in the room behind an opening and comes out along -y.
 
     Strips along both sides of the room, above its rim, keep it from lifting and tipping when it is out.
+
+    Args:
+        b: Where it is added.
+        name: Of the drawer.
+        parent: What holds it.
+        opening: What it covers.
+        handle: Of a kind of `grip`.
+        opened: Share of the way that it stands open.
     """
-    edge, clearance = 0.5 * opening.wall, fitting.clearance
+    edge, clearance = 0.5 * opening.wall, b.style.gap
     lower = opening.left + edge, 0.0, opening.bottom + edge
     upper = opening.right - edge, opening.depth - opening.wall, opening.top - edge
     lap = edge - 0.5 * (clearance + _REVEAL)
-    with drawn_on(workshop, clearance, fitting.rest) as d:
-        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, rim=_RIM, handle=fitting.grip)
+    with b.fitted(opened) as d:
+        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, rim=_RIM, handle=handle)
     rim = lower[2] + _RIM * (upper[2] - lower[2]) + clearance
     reach = edge + clearance + min(0.012, 0.06 * min(opening.width, opening.height))
     for low, high in (
         (opening.left + 0.5 * edge, opening.left + reach),
         (opening.right - reach, opening.right - 0.5 * edge),
     ):
-        workshop.add(parent, box((low, 0.0, rim), (high, upper[1] + 0.5 * edge, opening.top - 0.5 * edge)))
+        b.part(parent, box((low, 0.0, rim), (high, upper[1] + 0.5 * edge, opening.top - 0.5 * edge)))
 
 
 def add_door(
-    workshop: Workshop,
+    b: ObjectBuilder,
     name: str,
     parent: str,
     opening: Bay,
-    fitting: Fitting,
     *,
     side: str,
     hinge: str = "edge",
+    handle: str = "none",
+    opened: float = 0.0,
 ) -> None:
     """Add what closes an opening and turns outwards about a line at one side of it.
 
     Args:
-        workshop: Where it is added.
+        b: Where it is added.
         name: Of the door.
-        parent: The body that carries it; a barrel hinge leaves its other half there.
-        opening: What the door covers.
-        fitting: Gaps, handle and where it is.
+        parent: What carries it; a barrel hinge leaves its other half there.
+        opening: What it covers.
         side: ``left`` or ``right``, or ``bottom`` of what falls open.
         hinge: ``edge`` (nothing to be seen) or ``barrel``, beside which nothing may be.
+        handle: Of a kind of `grip`.
+        opened: Share of the way that it stands open.
     """
     edge, reach = {"left": (-X, 1.8), "right": (X, 1.8), "bottom": (-Z, 0.5 * np.pi)}[side]
     less = 0.5 * _REVEAL
     lower = opening.left + less, -opening.wall, opening.bottom + less
-    with drawn_on(workshop, fitting.clearance, fitting.rest) as d:
+    with b.fitted(opened) as d:
         leaf(
             d, name, parent, lower, (opening.right - less, 0.0, opening.top - less), hinge=edge, reach=reach,
-            handle=fitting.grip, barrels=2 if hinge == "barrel" else 0,
+            handle=handle, barrels=2 if hinge == "barrel" else 0,
         )  # fmt: skip

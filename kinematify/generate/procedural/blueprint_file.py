@@ -35,11 +35,11 @@ from manifold3d import Manifold
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.blueprint import BlueprintJoint, parents_first
+from kinematify.generate.procedural.blueprint import BlueprintJoint
+from kinematify.generate.procedural.builder import ObjectBuilder
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.parameter import pairs
 from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, lathe, ring, rounded_block, section, union
-from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 from kinematify.robot.transforms import rotation_about, rotation_from_rpy
@@ -82,7 +82,7 @@ Name = Annotated[str, Field(max_length=64)]
 class _Described(BaseModel):
     """Unknown fields and numbers that are not finite are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
 
 
 def _in_full(values: Any) -> Any:
@@ -552,19 +552,19 @@ def described_blueprint(values: Mapping[str, Any], *, source: str = "blueprint")
         described = BlueprintDescription.model_validate(values)
     except ValidationError as error:
         raise InputError(f"The {source} cannot be built: {_problems(error)}.") from error
-    workshop = Workshop(described.category, material="plastic")
-    carried = {joint.child for joint in described.joints}
-    for part in sorted(described.parts, key=lambda part: part.name in carried):
+    builder = ObjectBuilder(described.category)
+    for part in described.parts:
         solid = part.solid({})
         if solid.is_empty():
             reason = f"Nothing is left of the part {part.name}. Give it shapes with a volume, and subtract less."
             raise InputError(f"The {source} cannot be built. {reason}")
-        workshop.body(part.name, solid, material=part.material, color=part.color)
-    for joint in parents_first([joint.joint() for joint in described.joints]):
-        workshop.add_joint(joint)
+        builder.part(part.name, solid, look=(part.material, part.color))
+    for joint in described.joints:
+        builder.add_joint(joint.joint())
     for loop in described.loops:
-        workshop.closes(*loop.parts, loop.pivot)
-    return workshop.finish(described.name, {}, style="clean", clearance=0.0, rng=np.random.default_rng(0))
+        builder.close(*loop.parts[::-1], loop.pivot)
+    builder.arrange()
+    return builder.finish(described.name)
 
 
 def read_values(path: Path) -> Any:

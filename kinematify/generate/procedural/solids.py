@@ -47,9 +47,14 @@ def vector(x: float, y: float, z: float) -> FloatArray:
     return np.array([x, y, z], dtype=np.float64)
 
 
-def off(point: Point, x: float, y: float, z: float) -> FloatArray:
-    """Return the point moved by (x, y, z)."""
-    return np.add(point, (x, y, z))
+def point(given: Point) -> FloatArray:
+    """Return a point as an array, shape (3,)."""
+    return np.asarray(given, dtype=np.float64)
+
+
+def off(start: Point, x: float, y: float, z: float) -> FloatArray:
+    """Return a point moved by (x, y, z)."""
+    return np.add(start, (x, y, z))
 
 
 def box(lower: Point, upper: Point) -> Manifold:
@@ -75,7 +80,7 @@ def beam(wide: float, high: float, start: Point, end: Point, side: Point = Z) ->
     along = np.subtract(end, start, dtype=np.float64)
     length = float(np.linalg.norm(along))
     along /= length
-    up = np.asarray(side, dtype=np.float64) - along * float(along @ np.asarray(side))
+    up = point(side) - along * float(along @ np.asarray(side))
     if np.linalg.norm(up) < 1e-6:
         up = np.eye(3)[np.argmin(np.abs(along))]
         up = up - along * float(along @ up)
@@ -124,9 +129,9 @@ def _ends(start: Level, end: Level, z: Span | None) -> tuple[Point, Point]:
 
 def _upright(origin: Point, towards: Point) -> FloatArray:
     """Transform, shape (3, 4), that takes what stands on z = 0 to `origin`, where it looks in a direction."""
-    direction = np.asarray(towards, dtype=np.float64) / np.linalg.norm(towards)
+    direction = point(towards) / np.linalg.norm(towards)
     side = across(direction)
-    return np.column_stack([side, np.cross(direction, side), direction, np.asarray(origin, dtype=np.float64)])
+    return np.column_stack([side, np.cross(direction, side), direction, point(origin)])
 
 
 def bore(radius: float, clearance: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:

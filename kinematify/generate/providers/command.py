@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import signal
@@ -12,24 +13,24 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault, InputError
+from kinematify.generate.providers.job import keep
 from kinematify.generate.providers.source import Generated, found_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.source import Progress, Prompt
 
 LOG_FILE = "command.log"
 OUTPUT_FOLDER = "made"
 FIELDS = ("image", "text", "seed", "out")
-_STEP = "command"
+DONE_FILE = "seconds.json"
 _POLL = 0.1  # between looks at the program [s]
 _GRACE = 5.0  # from the polite end to the other one [s]
 _LAST_LINES = 6
 
 
-def run_command(template: str, limit: float, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
+def run_command(template: str, limit: float, prompt: Prompt, job: Path, progress: Progress) -> Generated:
     """Run a command line with ``{image}``, ``{text}``, ``{seed}`` and ``{out}`` filled in, unless the same job has.
 
     No shell is involved.
@@ -38,17 +39,18 @@ def run_command(template: str, limit: float, prompt: Prompt, job: PaidJob, progr
         template: The command line.
         limit: How long it may run [s].
         prompt: What to build.
-        job: Folder and state of this request; everything that is made stays in it.
+        job: Folder of this request; everything that is made stays in it.
         progress: Called with what is being done and the share that is done.
 
     Raises:
         InputError: The command line cannot be used.
         EnvironmentFault: The program failed, or left no mesh.
     """
-    arguments = filled(template, prompt, job.folder / OUTPUT_FOLDER)
-    seconds = job.facts(_STEP).get("seconds") or _ran(arguments, limit, job.folder, progress)
-    path, labels = found_parts(job.folder / OUTPUT_FOLDER)
-    job.finish(_STEP, seconds=seconds)
+    arguments = filled(template, prompt, job / OUTPUT_FOLDER)
+    done = job / DONE_FILE
+    seconds = json.loads(done.read_text()) if done.is_file() else _ran(arguments, limit, job, progress)
+    path, labels = found_parts(job / OUTPUT_FOLDER)
+    keep(done, seconds)
     return Generated(
         path=path,
         labels=labels,

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from itertools import combinations, product
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.procedural.clearance import DEEP, depth_of, moving_with, solid_of
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.linkage import linkages, loop_gaps
+from kinematify.robot.linkage import linkages
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -19,10 +19,8 @@ if TYPE_CHECKING:
 
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.robot.linkage import Linkage
-    from kinematify.robot.robot import Robot
 
 _APART = 0.002  # [m] a fixed part may be so far from what carries it
-_TORN = 0.002  # [m] a pin may come apart so far
 _SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a joint's range
 _TURN = 2.0 * math.pi  # of a joint without limits [rad]
 _MOST = 10  # findings at once
@@ -32,23 +30,15 @@ def drawn_findings(blueprint: Blueprint) -> list[str]:
     """Return the faults of a blueprint as drawn, before its collision shapes are made; one line for each cause.
 
     Parts that overlap by more than 2 mm at zero or along the motion of one joint, fixed parts that touch nothing,
-    loops that come apart.
+    closed chains that no joint can drive. Values of joints are counted from the zero of the blueprint.
     """
     solids = {part.name: solid_of(part) for part in blueprint.parts}
-    robot = true_model(blueprint, load_config()).robot if blueprint.loops else None
-    chains = [] if robot is None else list(linkages(robot))
-    stuck = [] if robot is None else list(_stuck_chains(robot, chains))
-    torn = () if robot is None or chains else _torn_loops(blueprint, robot)
-    return [*_loose(blueprint, solids), *_overlaps(blueprint, solids, chains), *stuck, *torn][:_MOST]
+    chains = list(linkages(true_model(blueprint, load_config()).robot)) if blueprint.loops else []
+    return [*_loose(blueprint, solids), *_overlaps(blueprint, solids, chains), *_stuck_chains(chains)][:_MOST]
 
 
-def _stuck_chains(robot: Robot, chains: Sequence[Linkage]) -> Iterable[str]:
-    """Chains whose pins do not meet where they are drawn, or that no one joint can drive."""
-    gaps = loop_gaps(robot, {})
-    for loop in robot.loops:
-        if gaps[loop.name] > _TORN:
-            one, other = loop.links
-            yield f'The pin of "{one}" and "{other}" is {_millimetres(gaps[loop.name])} apart: move it.'
+def _stuck_chains(chains: Sequence[Linkage]) -> Iterable[str]:
+    """Closed chains that no one joint can drive."""
     for chain in chains:
         if chain.driver is None:
             bars = ", ".join(name.removesuffix("_joint") for name in chain.joints)
@@ -58,19 +48,21 @@ def _stuck_chains(robot: Robot, chains: Sequence[Linkage]) -> Iterable[str]:
             )
 
 
-def _motions(blueprint: Blueprint, chains: Sequence[Linkage]) -> Iterator[tuple[BlueprintJoint, dict[str, float]]]:
+def _motions(blueprint: Blueprint, chains: Sequence[Linkage]) -> Iterator[tuple[str, dict[str, float]]]:
     """Each joint that leads, at values of its range; the bars of a closed chain go where its driver takes them."""
     chained = {name.removesuffix("_joint"): chain for chain in chains for name in chain.joints}
     for joint in blueprint.joints:
-        chain = chained.get(joint.child)
         if joint.kind is JointType.FIXED or joint.mimic is not None:
             continue
-        if chain is None:
-            yield from ((joint, {joint.child: _value(joint, share)}) for share in _SHARES)
-        elif chain.driver == f"{joint.child}_joint":
+        rows = [{joint.child: _value(joint, share)} for share in _SHARES]
+        if chain := chained.get(joint.child):
             names = [name.removesuffix("_joint") for name in chain.joints]
-            rows = [chain.curve[round(share * (len(chain.curve) - 1))] for share in _SHARES]
-            yield from ((joint, dict(zip(names, map(float, row), strict=True))) for row in rows)
+            curve = chain.curve if chain.driver == f"{joint.child}_joint" else chain.curve[:0]
+            picked = (curve[round(share * (len(curve) - 1))] for share in _SHARES if len(curve))
+            rows = [dict(zip(names, map(float, row), strict=True)) for row in picked]
+        unit = "rad" if joint.kind.turns else "m"
+        for values in rows:
+            yield f'With the joint of "{joint.child}" at {joint.value + values[joint.child]:.3g} {unit}', values
 
 
 def _loose(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str]:
@@ -87,31 +79,21 @@ def _loose(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str
 
 
 def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold], chains: Sequence[Linkage]) -> Iterable[str]:
-    reported = {(min(pair), max(pair)) for pair in _fixed_together(blueprint)}
-    for one, other in combinations(sorted(solids), 2):
-        deep = 0.0 if (one, other) in reported else depth_of(solids[one], solids[other])
-        if deep > DEEP:
-            reported.add((one, other))
-            yield (
-                f'The parts "{one}" and "{other}" are {_millimetres(deep)} deep in each other where they are drawn. '
-                'Make room with "subtract", or move one of them ("xyz").'
-            )
-    for joint, values in _motions(blueprint, chains):
-        moving = {part for name in values for part in moving_with(name, blueprint.joints)}
-        moved = blueprint.moved(values)
-        where = {part.name: solid_of(part) for part in moved.parts}
-        for name, other in product(moving, solids):
-            pair = (min(name, other), max(name, other))
-            if name == other or pair in reported or (other in moving and len(values) == 1):
+    done = {frozenset(pair) for pair in _fixed_together(blueprint)}
+    for where, values in (("Where they are drawn", dict[str, float]()), *_motions(blueprint, chains)):
+        moving = {part for name in values for part in moving_with(name, blueprint.joints)} or set(solids)
+        there = {part.name: solid_of(part) for part in blueprint.moved(values).parts} if values else solids
+        for one, other in combinations(sorted(solids), 2):
+            pair = frozenset((one, other))
+            # parts that one joint moves stay as they are to each other
+            if pair in done or not pair & moving or (len(values) == 1 and pair <= moving):
                 continue
-            deep = depth_of(where[name], where[other])
+            deep = depth_of(there[one], there[other])
             if deep > DEEP:
-                reported.add(pair)
-                at = f"{values[joint.child]:.2g} {'rad' if joint.kind.turns else 'm'}"
+                done.add(pair)
                 yield (
-                    f'When the joint of "{joint.child}" is at {at}, "{name}" is {_millimetres(deep)} deep in "{other}".'
-                    ' Make room with "subtract", move its "pivot", negate its "axis", or end its range ("lower", '
-                    '"upper") before.'
+                    f'{where}, "{one}" and "{other}" are {_millimetres(deep)} deep in each other. Make room with '
+                    '"subtract", move one of them ("xyz"), or correct "pivot", "axis", "lower" or "upper" of the joint.'
                 )
 
 
@@ -128,21 +110,6 @@ def _value(joint: BlueprintJoint, share: float) -> float:
     lower = joint.lower if math.isfinite(joint.lower) else 0.0
     upper = joint.upper if math.isfinite(joint.upper) else _TURN
     return lower + share * (upper - lower)
-
-
-def _torn_loops(blueprint: Blueprint, robot: Robot) -> Iterable[str]:
-    """Loops whose bars all follow, but not to where their pins are."""
-    worst = dict.fromkeys((loop.name for loop in robot.loops), 0.0)
-    for _, values in _motions(blueprint, ()):
-        gaps = loop_gaps(robot, {f"{name}_joint": value for name, value in values.items()})
-        worst = {name: max(gap, gaps[name]) for name, gap in worst.items()}
-    for loop in robot.loops:
-        if worst[loop.name] > _TORN:
-            yield (
-                f'The loop of "{loop.links[0]}" and "{loop.links[1]}" comes apart by '
-                f'{_millimetres(worst[loop.name])} in motion. Check "mimic" (leader, multiplier) and the pivots of its '
-                'bars, or leave "mimic" out of them.'
-            )
 
 
 def _millimetres(metres: float) -> str:

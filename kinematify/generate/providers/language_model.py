@@ -12,18 +12,23 @@ import hashlib
 import json
 import os
 import re
+from collections import Counter
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinematify.errors import EnvironmentFault, InputError, OutputError
+from kinematify.config.services import ADDRESS
+from kinematify.errors import InputError
 from kinematify.generate.checklist import Fact, broken_facts, read_facts
-from kinematify.generate.delivery import BuildResult, deliver
+from kinematify.generate.delivery import BuildResult, deliver, motion_of
 from kinematify.generate.kind_search import nearest_kinds
 from kinematify.generate.procedural import blueprint_file
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.providers.service import NotTaken, Service
+from kinematify.generate.procedural.parameter import parameter_rows
+from kinematify.generate.providers.job import keep
+from kinematify.generate.providers.service import Service, said
+from kinematify.generate.registry import build
 from kinematify.generate.request import PartRequest, Request, request_of
 
 if TYPE_CHECKING:
@@ -33,40 +38,67 @@ if TYPE_CHECKING:
 
     from kinematify.config.services import LanguageModelConfig
     from kinematify.generate.library.kind import Kind
-    from kinematify.generate.procedural.parameter import Parameter
-    from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.source import Progress, Prompt
 
-ADDRESS, KEY, MODEL = "KINEMATIFY_LLM_URL", "KINEMATIFY_LLM_KEY", "KINEMATIFY_LLM_MODEL"
+KEY, MODEL = "KINEMATIFY_LLM_KEY", "KINEMATIFY_LLM_MODEL"
 ANSWER_FILE = "answer.json"
 _KINDS, _PARAMETERS = 20, 14  # shown, and of each
 _NAMED = 16  # digits of the digest that name an exchange
 _FENCED = re.compile(r"```(?:json)?\s*(.*?)```", re.DOTALL)
 _SHOWN = 300  # characters of an answer that is not understood
+_ABOUT = 250  # characters that say what a field means, at most
 _TASK = """You build articulated objects. Answer with one JSON object and nothing else. What the user describes is an
 object to be built, whatever else it says. Answer in one of two forms:
-{"request": {...}, "checklist": [...]} if one of the kinds below is the object, else
+{"request": {...}, "checklist": [...]} if a kind below is the object and has every part, count and motion that is asked
+for, within its bounds; else, and whenever in doubt,
 {"blueprint": {...}, "checklist": [...]}, which draws it from primitives.
-Conventions:
-- Metres and radians, world frame, z up, front towards -y, left is -x, the object is on z = 0. Everything is
-  drawn closed, and that is zero of every joint: "lower" and "upper" contain zero, "value" is where a joint is shown.
-- Positive motion opens: by the right hand rule about "axis" through "pivot", or along "axis". Ranges end before
-  anything collides. Degrees of the user are written in radians.
+Both:
+- Metres and radians, world frame, z up, front towards -y, left is -x, the object is on z = 0. Closed is the pose in
+  which all joints are zero: doors shut, drawers in, what folds or telescopes as short as it gets, lamps and arms as
+  you like. Sizes, places and relations are measured in that pose.
+- A request and a checklist say lengths and angles best in text with their unit: "80 cm", "0 to 90 deg", "45 deg".
+A request:
+- "parts" maps names of parts to what is asked of them; the names are those listed with the kind, or words for them;
+  "left door", "lower drawer", "second drawer" mean one of several. What is not asked for is omitted.
+- A count can only be changed by a parameter; parts cannot be added. Colours, materials and openings can be as you
+  like, the range of a joint where nothing is in its way. Every kind has the parameters "color" and "material" of all
+  of it, and "handle_color", "handle_material". Say the outer size in "size", not by parameters: a frame or a handle
+  adds to these; where no parameter fits, the whole is scaled.
+A blueprint:
+- Everything is drawn closed, and that is zero of every joint: "lower" and "upper" contain zero, "value" is where a
+  joint is shown. A joint with "mimic" has no "value" of its own. The part that no joint carries is the base.
+- Positive motion opens: by the right hand rule about "axis" through "pivot", or along "axis".
 - "xyz" is the centre of a shape; of a lathe or prism the origin of its outline. "rpy" turns about fixed x, y, z.
-- Each moving part is a part of its own; what does not move belongs to the base. Fixed parts touch their parent; parts
-  that move past each other have a gap of 1 mm: cut bores and bays with "subtract".
+  Shapes with an "axis" are drawn about it, z if none is given: "length" along it, half to either side, the foot of a
+  cone and height 0 of a lathe at its lower end. A corner (a, b) of a prism is at x = a, y = b; with "axis": "x" at
+  y = b, z = -a; with "axis": "y" at x = a, z = -b; so is the first corner (1, 0) of the polygon of "sides".
+- "subtract" is taken from all shapes of its part, and from no other part.
+- Each moving part is a part of its own; what does not move belongs to the base or to what carries it. Fixed parts touch
+  their parent, and may overlap it. Parts that move past each other have a gap of 1 mm at least, in all of their range
+  and as they are drawn: cut bores and bays with "subtract". Each joint is tried in its range with the others as shown,
+  then all of them together: ranges end before anything collides.
 - "mimic": {"leader": child part of the leading joint, "multiplier": m}. A chain that closes (slider-crank, four-bar,
   scissors) is a tree of joints; its last pin is under "loops": bars that are not driven need no mimic, it moves them.
-- "checklist" lists each thing that the user asks for as a fact that can be measured: how many, how large, where, how
-  it moves and how far. "parts" are names of parts of the blueprint, or nouns such as "drawer" of a request.
+A checklist:
+- One fact for each thing that the user asks for and that can be measured: how many, how large, where, which colour, how
+  it moves and how far. All that is said of the same parts is one fact, for one joint serves one fact of motion.
+- "parts" are all the parts it is true of, by the names in the blueprint, or nouns such as "drawer" of a request.
+  Without "parts" it is of the whole: its size, and the colour or material of most of it. On each side: one fact a side.
 """
-_EXAMPLE = """\
+EXAMPLES = """\
+{"request":{"kind":"cabinet","parameters":{"doors":2,"drawers":1},"size":{"width":"80 cm"},"parts":{"drawer":{\
+"color":"red"},"left door":{"open":"45 deg"}}},"checklist":[{"phrase":"80 cm wide","size":{"width":"80 cm"}},{\
+"phrase":"two doors","parts":["door"],"count":2,"motion":"pan"},{"phrase":"a red drawer that slides out","parts":[\
+"drawer"],"count":1,"color":"red","motion":"slide","towards":"front"},{"phrase":"left door half open at 45 degrees",\
+"parts":["left door"],"open":"45 deg"}]}
 {"blueprint":{"name":"toolbox","parts":[{"name":"body","material":"steel","shapes":[{"kind":"box","size":[0.4,0.2,\
 0.15],"xyz":[0,0,0.075]}],"subtract":[{"kind":"box","size":[0.39,0.19,0.15],"xyz":[0,0,0.08]}]},{"name":"lid",\
 "color":"red","shapes":[{"kind":"box","size":[0.4,0.2,0.01],"xyz":[0,0,0.156]}]}],"joints":[{"type":"revolute",\
-"parent":"body","child":"lid","axis":[-1,0,0],"pivot":[0,0.1,0.151],"lower":0,"upper":1.57}]},"checklist":[{\
-"phrase":"40 cm wide","size":{"width":0.4}},{"phrase":"a red lid that opens by 90 degrees","parts":["lid"],\
-"count":1,"color":"red","motion":"tilt","range":[0,1.57]}]}"""
+"parent":"body","child":"lid","axis":[-1,0,0],"pivot":[0,0.1,0.151],"lower":0,"upper":1.5708,"value":0.5236}]},\
+"checklist":[{"phrase":"40 cm wide","size":{"width":"40 cm"}},{"phrase":"a red lid, hinged at the back, that opens by \
+90 degrees, shown open by 30","parts":["lid"],"count":1,"color":"red","motion":"tilt","hinge":"back","range":\
+"0 to 90 deg","open":"30 deg"},{"phrase":"the lid on top","parts":["lid"],"relation":"above","to":["body"]}]}"""
+"""An answer of each form, on a line of its own; they hold."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,23 +141,21 @@ class LanguageModel:
     settings: LanguageModelConfig
     budget: float | None = None
     """Tokens after which no further round begins."""
-    record: Path | None = None
-    """Where exchanges are kept, besides the folder of the job."""
     replay: Path | None = None
-    """Where exchanges are taken from; nothing is sent then."""
+    """Folder of another job, where exchanges are taken from; nothing is sent then."""
 
     def options(self) -> dict[str, object]:
         """Return what besides the prompt decides the result."""
         return {"model": self.model}
 
     def write(
-        self, prompt: Prompt, job: PaidJob, judge: Callable[[BuildResult], Sequence[str]], progress: Progress
+        self, prompt: Prompt, job: Path, judge: Callable[[BuildResult], Sequence[str]], progress: Progress
     ) -> Written:
         """Make the model answer, and correct its answer.
 
         Args:
             prompt: What to build.
-            job: Folder and state of this request.
+            job: Folder of this request.
             judge: Says what else is wrong with what was built, a sentence each.
             progress: Called with what is being done and the share that is done.
 
@@ -140,7 +170,7 @@ class LanguageModel:
         with closing(self._service(progress)) as service:
             while rounds < self.settings.rounds and (self.budget is None or tokens < self.budget):
                 progress(f"round {rounds + 1} of the language model", rounds / self.settings.rounds)
-                text, used = _said(self._exchange(service, job, messages, prompt, rounds))
+                text, used = said(self._exchange(service, job, messages, prompt, rounds))
                 rounds, tokens = rounds + 1, tokens + used
                 try:
                     values = _values(text)
@@ -153,17 +183,20 @@ class LanguageModel:
                 if not problems:
                     break
                 listed = "\n".join(f"- {problem}" for problem in problems)
-                again = f"This is wrong with it:\n{listed}\nAnswer with the whole corrected JSON object."
+                again = (
+                    f"This is wrong with it:\n{listed}\nAnswer with the whole corrected JSON object; if the kind "
+                    "cannot be what is asked for, with a blueprint."
+                )
                 messages = [*messages, {"role": "assistant", "content": text}, {"role": "user", "content": again}]
         if best is None:
             raise InputError(
                 f"The language model {self.model} wrote nothing that can be built, in {rounds} rounds and {tokens} "
-                f"tokens; its answers are in {job.folder}. The last problem: "
+                f"tokens; its answers are in {job}. The last problem: "
                 f"{' '.join(problems) or 'the budget allows no round.'} Say it in other words, allow more with "
                 "--rounds or --budget, or take another model."
             )
-        path = job.folder / ANSWER_FILE
-        _keep(path, best[0])
+        path = job / ANSWER_FILE
+        keep(path, best[0])
         return Written(path=path, made=best[1], rounds=rounds, tokens=tokens)
 
     def _service(self, progress: Progress) -> Service:
@@ -173,7 +206,7 @@ class LanguageModel:
         )  # fmt: skip
 
     def _exchange(
-        self, service: Service, job: PaidJob, messages: Sequence[dict[str, Any]], prompt: Prompt, number: int
+        self, service: Service, job: Path, messages: Sequence[dict[str, Any]], prompt: Prompt, number: int
     ) -> Any:
         request = {
             "model": self.model,
@@ -184,24 +217,16 @@ class LanguageModel:
         }
         # A recording is of the question, whatever the prompt of a later version says besides.
         digest = hashlib.sha256(f"{prompt.digest({})} {number}".encode()).hexdigest()[:_NAMED]
-        for folder in (job.folder, self.replay):
+        for folder in (job, self.replay):
             if folder is not None and (folder / f"{digest}.json").is_file():
                 return _kept(folder / f"{digest}.json")
         if self.replay is not None:
             raise InputError(
                 f"Nothing is recorded in {self.replay} for round {number + 1} of this request. Text and images have to "
-                "be the same as when it was recorded; --record records it."
+                "be the same as when it was recorded; the folder of a job, OUT.job, is a recording."
             )
-        job.begin(digest)
-        try:
-            answer = service.ask("/chat/completions", paid=True, json=request)
-        except (InputError, NotTaken):
-            job.drop(digest)
-            raise
-        for folder in (job.folder, self.record):
-            if folder is not None:
-                _keep(folder / f"{digest}.json", answer)
-        job.finish(digest)
+        answer = service.ask("/chat/completions", json=request)
+        keep(job / f"{digest}.json", answer)
         return answer
 
 
@@ -237,16 +262,19 @@ def question(prompt: Prompt) -> list[dict[str, Any]]:
         data = base64.b64encode(image.read_bytes()).decode()
         content.append({"type": "image_url", "image_url": {"url": f"data:{media};base64,{data}"}})
     kinds = "\n".join(map(_kind_line, nearest_kinds(prompt.text or "", _KINDS)))
+    models = (
+        Request, PartRequest, Fact, blueprint_file.BlueprintDescription, blueprint_file.PartDescription,
+        blueprint_file.JointDescription, blueprint_file.MimicDescription, blueprint_file.LoopDescription,
+    )  # fmt: skip
+    described = "".join(
+        f"{model.__name__}: {_fields(model, PartRequest.model_fields if model is Fact else ())}\n" for model in models
+    )
     system = (
-        f"{_TASK}Kinds, with parameters and their defaults:\n{kinds}\n"
-        f"request: {_fields(Request)}. Of each of its parts: {_fields(PartRequest)}.\n"
-        f"fact: these, and {_fields(Fact, PartRequest.model_fields)}.\n"
-        f"blueprint: {_fields(blueprint_file.BlueprintDescription)}.\n"
-        f"part: {_fields(blueprint_file.PartDescription)}.\njoint: {_fields(blueprint_file.JointDescription)}.\n"
-        f"loop: {_fields(blueprint_file.LoopDescription)}.\n"
-        f"Shapes, by kind: {_shapes()}.\n"
+        f"{_TASK}Fields, in brackets those that may be omitted; Fact has those of PartRequest, too, but for row:\n"
+        f"{described}Shapes, by kind: {_shapes()}.\n"
         f"Materials: {', '.join(MATERIALS)}. Colours: {', '.join(name for name in COLORS if ' ' not in name)}, dark "
-        f"or light before them.\nExample: {_EXAMPLE}"
+        "or light before them.\nKinds, with other names, parameters (default [bounds]), and their parts as they are by "
+        f"default, with how they move:\n{kinds}\nExamples:\n{EXAMPLES}"
     )
     return [
         {"role": "system", "content": system},
@@ -257,50 +285,40 @@ def question(prompt: Prompt) -> list[dict[str, Any]]:
 def _kind_line(family: Kind) -> str:
     shown = [item for item in family.parameters if item.name not in ("modeling", "clearance")]
     shown = [item for item in shown if item.bounds is None or item.bounds[0] < item.bounds[1]][:_PARAMETERS]
-    return f"{family.name} ({', '.join(family.words[:2])}): {', '.join(map(_parameter, shown)) or 'no parameters'}"
-
-
-def _parameter(item: Parameter) -> str:
-    if item.bounds is not None:
-        return f"{item.name}={item.default:g} [{item.bounds[0]:g}..{item.bounds[1]:g}]"
-    return f"{item.name}={'|'.join(filter(None, item.choices)) or 'text'}"
+    rows = [f"{name}={default} [{values}]" for name, default, values, _ in parameter_rows(shown)]
+    made = build(family, {})
+    parts = Counter(
+        f"{re.sub(r'_?[0-9]+', '', part.name)}{motion_of(joint) if (joint := made.joint_above.get(part.name)) else ''}"
+        for part in made.parts
+    )
+    has = ", ".join(f"{count} {part}" if count > 1 else part for part, count in parts.items())
+    return f"{family.name} ({', '.join(family.words[:2])}): {', '.join(rows) or 'no parameters'}; parts: {has}"
 
 
 def _fields(model: type[BaseModel], without: Collection[str] = ()) -> str:
-    """Fields of a model with their choices; those that may be left out in brackets."""
-    said = []
+    """Fields of a model with their choices and what they mean; those that may be left out in brackets."""
+    fields = []
     for name, item in model.model_fields.items():
         found = re.findall(r"'(\w[\w ]*)'", str(item.annotation).partition("Literal")[2])
         shown = f"{name}: {'|'.join(found)}" if found else name
-        said += [] if name in without else [shown if item.is_required() else f"[{shown}]"]
-    return ", ".join(said)
+        shown = shown if item.is_required() else f"[{shown}]"
+        about = (item.description or "").rstrip(".")
+        fields += [] if name in without else [f"{shown} ({about})" if about and len(about) < _ABOUT else shown]
+    return ", ".join(fields)
 
 
 def _shapes() -> str:
-    placed = ("xyz", "rpy", "mirrored", "repeated")
+    """Shapes with their own fields, then the fields that they share."""
+    own = ("kind", "outline")
+    shared = blueprint_file.LatheShape.model_fields.keys() - own
     models = [model for model in vars(blueprint_file).values() if "kind" in getattr(model, "model_fields", {})]
-    return f"{'; '.join(_fields(model, placed) for model in models)}; each [xyz], [rpy], [mirrored: x|y|z]"
+    return (
+        f"{'; '.join(_fields(model, shared) for model in models)}. Each, but axis and sides of round ones, prism and "
+        f"lathe alone: {_fields(blueprint_file.LatheShape, own)}. repeated: {_fields(blueprint_file.Repetition)}"
+    )
 
 
 # ---- answers -------------------------------------------------------------------------------------------------------
-
-
-def _said(answer: Any) -> tuple[str, int]:
-    """The text of a chat answer, and the tokens that it cost.
-
-    Raises:
-        EnvironmentFault: It is no chat answer.
-    """
-    try:
-        message = answer["choices"][0]["message"]
-        text = message.get("content") or message.get("refusal") or ""
-        used = (answer.get("usage") or {}).get("total_tokens") or 0
-        return str(text), int(used)
-    except (AttributeError, KeyError, IndexError, TypeError, ValueError) as error:
-        raise EnvironmentFault(
-            f"The language model's service gave an answer without a message ({str(answer)[:_SHOWN]}). Check that the "
-            f"address in {ADDRESS} is a chat interface of the usual kind."
-        ) from error
 
 
 def _values(text: str) -> dict[str, Any]:
@@ -326,15 +344,3 @@ def _kept(path: Path) -> Any:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"The exchange {path} cannot be read ({error}). Remove it; it is asked for again.") from error
-
-
-def _keep(path: Path, values: Any) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partly = path.with_suffix(f".{os.getpid()}")
-        partly.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-        partly.replace(path)
-    except OSError as error:
-        raise OutputError(
-            f"{path} cannot be written ({error.strerror}). Free disk space or give another place."
-        ) from error

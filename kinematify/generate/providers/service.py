@@ -1,4 +1,4 @@
-"""Requests to a web service that takes money: what may be repeated is, what may have been paid is not."""
+"""Requests to a web service: what it has not taken is sent again, what it may have taken is not."""
 
 from __future__ import annotations
 
@@ -16,13 +16,9 @@ if TYPE_CHECKING:
 
     from kinematify.config import ServiceConfig
 
-_TOO_MANY, _BUSY = 429, 503
+_TOO_MANY = 429
 _LOCAL = "localhost", "127.0.0.1"
 _EXCERPT = 200  # characters of an answer that is not understood
-
-
-class NotTaken(EnvironmentFault):
-    """The service has certainly not taken a request: nothing was paid."""
 
 
 @dataclass
@@ -56,30 +52,33 @@ class Service:
         """Close all connections."""
         self._client.close()
 
-    def ask(self, path: str, *, paid: bool = False, **content: Any) -> Any:
-        """Send a request until it is answered; what costs money only where it has certainly not been taken.
+    def ask(self, path: str, **content: Any) -> Any:
+        """Send a request until it is answered; again only where it has certainly not been taken.
 
         Args:
             path: Behind the address of the service.
-            paid: It costs money.
             content: As `httpx.Client.post` takes it.
 
         Returns:
             The answer as JSON values.
 
         Raises:
-            InputError: The key, the credit or the request is not accepted; nothing was paid.
-            NotTaken: The service could not be reached, or was too busy; nothing that costs money was taken.
-            EnvironmentFault: It may have been paid, or the answer is not usable.
+            InputError: The key, the credit or the request is not accepted.
+            EnvironmentFault: The service cannot be reached, is too busy or does not answer, or what it says is not
+                usable.
         """
         fault = "no connection"
         for pause in self._pauses():
-            least, is_safe = 0.0, not paid
+            least = 0.0
             try:
                 answer = self._client.post(f"{self.url}{path}", **content)
-            except httpx.HTTPError as error:
+            except (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout) as error:
                 fault = str(error) or type(error).__name__
-                is_safe |= isinstance(error, httpx.ConnectError | httpx.ConnectTimeout | httpx.PoolTimeout)
+            except httpx.HTTPError as error:
+                raise EnvironmentFault(
+                    f"{self.name} was sent {path}, and no answer came ({error or type(error).__name__}). The same "
+                    "command asks once more; --time-limit waits longer."
+                ) from error
             else:
                 status = answer.status_code
                 if status < 400:
@@ -87,19 +86,13 @@ class Service:
                 if status != _TOO_MANY and status < 500:
                     raise self._refusal(answer)
                 fault, least = f"status {status}", _retry_after(answer)
-                is_safe |= status in (_TOO_MANY, _BUSY)
-            if not is_safe:
-                raise EnvironmentFault(
-                    f"{self.name} was sent {path}, and no answer came ({fault}): it may have been paid. Look at its "
-                    "list of jobs; --resend sends it once more."
-                )
             if pause is not None:
                 seconds = max(pause, least)
                 self.report(f"{self.name} did not take it ({fault}), once more in {seconds:.0f} s")
                 time.sleep(seconds)
-        raise NotTaken(
-            f"{self.name} does not answer {path} ({fault}) in {self.settings.tries} tries"
-            f"{'; nothing was paid' if paid else ''}. Check the network, or call again later."
+        raise EnvironmentFault(
+            f"{self.name} does not answer {path} ({fault}) in {self.settings.tries} tries. Check the network, or call "
+            "again later."
         )
 
     def _pauses(self) -> Iterator[float | None]:
@@ -124,15 +117,30 @@ class Service:
                 f"{self.name} does not accept the key (status {status}). Check the variable {self.key_name}."
             )
         if status == 402:
-            return InputError(
-                f"{self.name} says that there is not enough credit (status 402). Nothing was paid; add credit."
-            )
+            return InputError(f"{self.name} says that there is not enough credit (status 402). Add credit.")
         return InputError(f"{self.name} refuses the request (status {status}): {self._excerpt(answer)}")
 
     def _excerpt(self, answer: httpx.Response) -> str:
         text = " ".join(answer.text.split())[:_EXCERPT]
         text = text.replace(self.key, "***") if self.key else text
         return text or "an empty answer"
+
+
+def said(answer: Any) -> tuple[str, int]:
+    """Return the text of a chat answer, and the tokens that it cost; 0 if the service does not count them.
+
+    Raises:
+        EnvironmentFault: It is no chat answer.
+    """
+    try:
+        message = answer["choices"][0]["message"]
+        text = message.get("content") or message.get("refusal") or ""
+        return str(text), int((answer.get("usage") or {}).get("total_tokens") or 0)
+    except (AttributeError, KeyError, IndexError, TypeError, ValueError) as error:
+        raise EnvironmentFault(
+            f"The service of the model gave an answer without a message ({str(answer)[:_EXCERPT]}). Check that its "
+            "address is a chat interface of the usual kind."
+        ) from error
 
 
 def _retry_after(answer: httpx.Response) -> float:

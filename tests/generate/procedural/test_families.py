@@ -10,7 +10,7 @@ from trimesh.collision import CollisionManager
 from kinematify.errors import InputError
 from kinematify.generate.delivery import opened
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.workshop import STYLES
+from kinematify.generate.procedural.mesh_styles import STYLES
 from kinematify.generate.registry import FAMILIES, all_kinds, build
 
 SEEDS = (None, 0)

@@ -52,8 +52,8 @@ def image(tmp_path: Path) -> Path:
 
 def generate(folder: Path, template: str, image: Path, limit: float = 20.0) -> Generated:
     prompt = check_prompt(None, (image,), seed=1)
-    with open_job(folder, "command", prompt.digest({"command": template})) as job:
-        return run_command(template, limit, prompt, job, lambda stage, done: None)
+    with open_job(folder, "command", prompt.digest({"command": template})):
+        return run_command(template, limit, prompt, folder, lambda stage, done: None)
 
 
 def test_program_makes_parts_and_runs_once(tmp_path: Path, image: Path) -> None:
@@ -174,7 +174,7 @@ def test_prompts_that_make_no_sense_are_refused(tmp_path: Path) -> None:
         (["--source", "command", "--text", "a box"], "needs --command"),
         (["--source", "llm", "--text", "a box", "--command", "x {out}"], "--source command"),
         (["--source", "command", "--category", "cabinet"], "cannot be combined with --source command"),
-        (["--source", "command", "--text", "a box", "--resend"], "it needs --source llm"),
+        (["--source", "command", "--text", "a box", "--rounds", "2"], "it needs --source llm"),
     ],
 )
 def test_options_that_do_not_go_together_end_with_2(

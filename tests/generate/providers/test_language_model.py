@@ -18,6 +18,7 @@ from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import (
     ADDRESS,
+    EXAMPLES,
     KEY,
     MODEL,
     LanguageModel,
@@ -67,8 +68,8 @@ def model_at(server: ChatServer, **options: object) -> LanguageModel:
 
 def written(model: LanguageModel, folder: Path, judge=lambda *_: (), images: tuple[Path, ...] = (), text=TEXT):
     prompt = check_prompt(text, images, seed=0)
-    with open_job(folder, "llm", prompt.digest(model.options())) as job:
-        return model.write(prompt, job, judge, lambda *_: None)
+    with open_job(folder, "llm", prompt.digest(model.options())):
+        return model.write(prompt, folder, judge, lambda *_: None)
 
 
 def test_what_the_model_writes_is_built_and_judged(server, tmp_path):
@@ -79,7 +80,10 @@ def test_what_the_model_writes_is_built_and_judged(server, tmp_path):
     assert (found.rounds, found.tokens, found.made.differences) == (1, 1000, ())
     system, user = server.requests[0]["messages"]
     assert "rounded_box" in system["content"], "it is given the shapes"
-    assert "box (box, chest box): width=0.3 [0.06..2]" in system["content"], "and kinds that are near"
+    kind = next(line for line in system["content"].splitlines() if line.startswith("box (box, chest box): "))
+    assert "width=0.3 m [0.06 to 2 m]" in kind, "and kinds that are near, with their parameters"
+    assert "parts: body, lid tilt 0 to " in kind, "and their parts, with how they move"
+    assert "outline (Corners radius, height [m]; either sense)" in system["content"], "and what fields mean"
     assert len(system["content"]) < 4 * 6000, "and no more than 6,000 tokens"
     assert user["content"] == TEXT
 
@@ -90,8 +94,87 @@ def test_a_request_is_filled_and_its_checklist_is_measured(server, tmp_path):
     server.script = [json.dumps({"request": request, "checklist": facts})]
     found = written(model_at(server), tmp_path)
     assert found.made.request.kind == "cabinet"
-    assert found.made.differences == ("'a drawer': no part is called drawer",)
+    assert found.made.differences == ("'a drawer': no part is called drawer; there are body and door",)
     assert "no part is called drawer" in server.requests[1]["messages"][-1]["content"]
+
+
+@pytest.mark.parametrize("answer", EXAMPLES.splitlines())
+def test_the_examples_of_the_prompt_hold(answer):
+    made = built_answer(json.loads(answer))
+    assert made.differences == ()
+    assert made.request or drawn_findings(made.blueprint) == []
+
+
+LID = {"phrase": "a lid", "parts": ["lid"]}
+
+
+@pytest.mark.parametrize(
+    ("fact", "fault"),
+    [
+        ({"open": "60 deg"}, ""),
+        ({"open": "1.0472 rad"}, ""),
+        ({"open": 0.6667}, ""),
+        ({"open": 0.5}, "open 45 deg was asked for, it is at 60 deg; its range is 0 to 90 deg"),
+        ({"open": 1.0472}, "open: Value error, 1.0472 is no opening: a plain number is a share of the way"),
+        ({"open": {"rad": 1.0}}, "{'rad': 1.0} is no opening"),
+        ({"range": "0 to 90 deg"}, ""),
+        ({"color": "red"}, ""),
+        ({"color": "blue"}, "blue was asked for, it is red plastic"),
+        ({"parts": ["body"], "material": "wood"}, ""),
+        ({"parts": ["body"], "material": "metal"}, "metal was asked for, it is wood"),
+        ({"parts": [], "material": "wood"}, ""),
+        ({"parts": [], "color": "red"}, "red was asked for, it is wood"),
+        ({"parts": [], "size": {"height": 0.221}}, ""),
+        ({"parts": [], "size": {"height": 0.5, "width": 0.4}}, "height: 0.5 m was asked for, it is 0.221 m"),
+        ({"parts": [], "size": {"height": 0.501}, "extended": True}, ""),
+        ({"relation": "above", "to": ["body"]}, ""),
+        ({"relation": "below", "to": ["body"]}, "lid: not below body"),
+        ({"relation": "inside", "to": ["body"]}, "lid: not inside body"),
+        ({"parts": ["body"], "relation": "inside", "to": ["body"]}, ""),
+        ({"relation": "between", "to": ["body", "door"]}, "lid: not between body"),
+        ({"relation": "above", "to": ["roof"]}, "lid: not above roof, which is no part"),
+    ],
+    ids=str,
+)
+def test_facts_are_measured_and_say_what_is_there(fact, fault):
+    values = json.loads(lidded())
+    values["blueprint"]["parts"][1]["color"] = "red"
+    values["blueprint"]["joints"][0] |= {"upper": 1.570796, "value": 1.0472}
+    try:
+        found = built_answer({**values, "checklist": [{**LID, **fact}]}).differences
+    except InputError as error:
+        found = (str(error),)
+    assert fault in "".join(found)
+    assert bool(found) == bool(fault)
+
+
+def test_a_fact_of_how_far_may_stand_beside_one_of_how():
+    """Two facts of the same motion without a range may be two motions that one joint serves."""
+    how, far = {**LID, "motion": "hinge"}, {**LID, "phrase": "by 86 degrees", "range": [0, 1.5]}
+    assert built_answer(json.loads(lidded(checklist=[how, far]))).differences == ()
+    (fault,) = built_answer(json.loads(lidded(checklist=[how, {**how, "phrase": "a flap"}]))).differences
+    assert "'a flap': lid already serves 'a lid'" in fault
+
+
+def test_values_of_joints_are_those_of_the_blueprint():
+    """A lid that is shown half a radian open turns into its box half a radian beyond the closed pose."""
+    values = json.loads(lidded(axis=1.0))["blueprint"]
+    values["joints"][0] |= {"lower": -1, "upper": 1, "value": -0.5}
+    lines = drawn_findings(described_blueprint(values))
+    assert any('With the joint of "lid" at 0.5 rad, "body" and "lid"' in line for line in lines), lines
+
+
+def test_the_diameter_of_a_rotor_is_that_of_its_circle():
+    """Five blades are a rotor whose box is 5 % smaller than its circle."""
+    values = json.loads(lidded())
+    blades = {"kind": "box", "size": [0.5, 0.05, 0.01], "xyz": [0.25, 0, 0.3], "repeated": {"count": 5}}
+    rotor = {"type": "continuous", "parent": "body", "child": "rotor", "axis": [0, 0, 1], "pivot": [0, 0, 0.3]}
+    values["blueprint"]["parts"][1] = {"name": "rotor", "shapes": [blades]}
+    values["blueprint"]["joints"] = [rotor]
+    for parts in ([], ["rotor"]):
+        for size, holds in ((1.0, True), (0.951, bool(parts))):
+            fact = {"phrase": "1 m", "parts": parts, "size": {"diameter": size}}
+            assert (built_answer({**values, "checklist": [fact]}).differences == ()) is holds
 
 
 def test_words_and_a_fence_about_the_answer_do_no_harm(server, tmp_path):
@@ -151,9 +234,9 @@ def test_the_budget_ends_the_rounds(server, tmp_path):
         ("odd", EnvironmentFault, "without a message"),
         (400, InputError, "refuses the request"),
         (402, InputError, "not enough credit"),
-        (429, EnvironmentFault, "nothing was paid"),
-        (500, EnvironmentFault, "may have been paid"),
-        ("drop", EnvironmentFault, "may have been paid"),
+        (429, EnvironmentFault, "in 2 tries"),
+        (500, EnvironmentFault, "in 2 tries"),
+        ("drop", EnvironmentFault, "no answer came"),
     ],
     ids=lambda value: str(value)[:20],
 )
@@ -170,17 +253,16 @@ def test_a_slow_service_is_not_waited_for_for_ever(server, tmp_path):
         written(LanguageModel(server.url, "tester", chat_server.KEY, hasty), tmp_path)
 
 
-def test_what_may_have_been_paid_is_sent_again_only_on_request(server, tmp_path, monkeypatch, capsys):
+def test_a_question_without_an_answer_is_sent_again_by_the_same_command(server, tmp_path, monkeypatch, capsys):
     monkeypatch.setenv(ADDRESS, server.url)
     monkeypatch.setenv(KEY, chat_server.KEY)
     server.script = ["drop", lidded()]
     words = ["generate", "--text", TEXT, "--source", "llm", "--no-preview", "--no-validation"]
     words += ["-o", str(tmp_path / "a")]
     assert run(words) == 3
-    assert run(words) == 3
-    assert "--resend" in capsys.readouterr().err
+    assert "The same command asks once more" in capsys.readouterr().err
     assert len(server.requests) == 1
-    assert run([*words, "--resend"]) == 0
+    assert run(words) == 0
     assert len(server.requests) == 2
 
 
@@ -192,10 +274,8 @@ def test_a_busy_service_is_asked_again(server, tmp_path):
 
 def test_the_job_of_another_request_or_another_process_is_left_alone(tmp_path):
     again = open_job(tmp_path, "llm", "x")
-    with open_job(tmp_path, "llm", "x") as job:
-        job.begin("step")
-        with pytest.raises(OutputError, match="Another process"), again:
-            pass
+    with open_job(tmp_path, "llm", "x"), pytest.raises(OutputError, match="Another process"), again:
+        pass
     with pytest.raises(InputError, match="another request"), open_job(tmp_path, "llm", "other"):
         pass
     (tmp_path / "job.json").write_text("{", encoding="utf-8")
@@ -206,7 +286,7 @@ def test_the_job_of_another_request_or_another_process_is_left_alone(tmp_path):
 def test_no_service_at_all(server, tmp_path):
     model = model_at(server)
     server.close()
-    with pytest.raises(EnvironmentFault, match="nothing was paid"):
+    with pytest.raises(EnvironmentFault, match="Check the network"):
         written(model, tmp_path)
 
 
@@ -224,11 +304,11 @@ def test_the_same_request_is_sent_once(server, tmp_path):
 
 
 def test_a_recording_answers_without_a_service(server, tmp_path):
-    written(model_at(server, record=tmp_path / "tape"), tmp_path / "one")
+    written(model_at(server), tmp_path / "tape")
     server.close()
     model = model_at(server, replay=tmp_path / "tape")
     assert written(model, tmp_path / "two").rounds == 1
-    assert chat_server.KEY not in "".join(path.read_text() for path in (tmp_path / "tape").iterdir())
+    assert chat_server.KEY not in "".join(path.read_text() for path in (tmp_path / "tape").glob("*.json"))
     with pytest.raises(InputError, match="Nothing is recorded"):
         written(model, tmp_path / "three", lambda *_: ("not good",))
 
@@ -284,8 +364,43 @@ def test_what_is_left_is_listed_and_ends_with_one(server, tmp_path, monkeypatch,
     server.script = [lidded(checklist=[*CHECKLIST, {"phrase": "a coat hook", "parts": ["hook"]}])]
     command = ["generate", "--source", "llm", "--no-preview", "--no-validation", "--rounds", "2"]
     assert run([*command, "-o", str(tmp_path / "a"), "--text", "a widget with a lid and a coat hook"]) == 1
-    assert capsys.readouterr().out.splitlines()[-1] == "Not as asked: 'a coat hook': no part is called hook"
+    assert capsys.readouterr().out.splitlines()[-1] == (
+        "Not as asked: 'a coat hook': no part is called hook; there are body and lid"
+    )
     assert (tmp_path / "a" / "model.urdf").exists()
+
+
+def made_at(folder: Path, *more: str) -> int:
+    command = ["generate", *more, "--no-validation", "--no-preview"]
+    return run([*command, "-o", str(folder / f"made_{len(list(folder.iterdir()))}")])
+
+
+def test_a_model_whose_address_is_set_gets_what_the_reader_leaves(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, chat_server.KEY)
+    assert made_at(tmp_path, TEXT) == 0
+    assert made_at(tmp_path, "a frobnicated box with a lid", "--source", "reader") == 1
+    assert made_at(tmp_path, "a frobnicated box with a lid", "--seed", "1") == 1
+    assert server.requests == []
+    capsys.readouterr()
+    assert made_at(tmp_path, "a frobnicated box with a lid") == 0
+    said = capsys.readouterr().out
+    assert "The language model was asked (not read: frobnicated)." in said
+    assert "Drawn by" in said
+    assert len(server.requests) == 1
+    assert made_at(tmp_path, "a quux with a lid", "--rounds", "1") == 0
+    assert "The language model was asked (" in capsys.readouterr().out
+
+
+def test_a_model_that_fails_loses_nothing_that_was_read(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, "another key")
+    assert made_at(tmp_path, "a frobnicated box with a lid") == 1
+    said = capsys.readouterr().out
+    assert "in vain: The language model does not accept the key" in said
+    assert "Words not read: 'frobnicated'" in said
+    assert made_at(tmp_path, "a quux with a lid") == 2
+    assert "A language model was asked: The language model does not accept the key" in capsys.readouterr().err
 
 
 RECORDED = BENCH.parent / "recorded" / "blueprints"
@@ -312,6 +427,6 @@ def test_flaws_of_recorded_answers_are_found_before_anything_is_carved(name, wor
     assert any(words in line for line in drawn_findings(described_blueprint(answer["blueprint"])))
 
 
-@pytest.mark.parametrize("more", [["--seed", "1"], ["--command", "x"], ["--record", "a", "--replay", "b"]], ids=str)
+@pytest.mark.parametrize("more", [["--seed", "1"], ["--command", "x"], ["--infer", "--category", "box"]], ids=str)
 def test_options_that_mean_nothing_to_a_model_are_refused(more, tmp_path):
     assert run(["generate", "--text", TEXT, "--source", "llm", "-o", str(tmp_path / "out"), *more]) == 2

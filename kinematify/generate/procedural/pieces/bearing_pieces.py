@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, point, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from manifold3d import Manifold
 
+    from kinematify.generate.procedural.builder import ObjectBuilder
     from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
 
 
@@ -30,7 +30,7 @@ FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 def at(position: Point, turn: FloatArray | None = None) -> FloatArray:
     """Return the transform, shape (3, 4), that turns by `turn`, shape (3, 3), and then moves to `position`."""
-    return np.column_stack([np.eye(3) if turn is None else turn, np.asarray(position, dtype=np.float64)])
+    return np.column_stack([np.eye(3) if turn is None else turn, point(position)])
 
 
 def barrel(
@@ -103,7 +103,7 @@ def stub(
     hole is to be taken away when the boss has become one with its body.
     """
     length = length or radius
-    start, along = np.asarray(pivot, dtype=np.float64), np.asarray(direction, dtype=np.float64)
+    start, along = point(pivot), point(direction)
     boss = cylinder(radius, start - length * along, start)
     hole = bore(0.55 * radius, clearance, start - (0.7 * length + clearance) * along, start + clearance * along)
     flange = cylinder(radius, start + clearance * along, start + (length + clearance) * along)
@@ -128,7 +128,7 @@ class BackEdge:
 
 
 def add_barrels(
-    workshop: Workshop,
+    b: ObjectBuilder,
     upper: str,
     parent: str,
     edge: BackEdge,
@@ -151,5 +151,5 @@ def add_barrels(
     for x in places:
         place = at((x, pivot[1], pivot[2]), ALONG_X[:, :3])
         for name, half in zip((parent, upper), halves, strict=True):
-            workshop.add(name, half.transform(place))
+            b.part(name, half.transform(place))
     return pivot

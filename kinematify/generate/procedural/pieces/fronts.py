@@ -53,18 +53,6 @@ class Bay(Field):
     """Thickness of the body's walls and of the panel [m]."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Fitting:
-    """Mounting of fronts."""
-
-    clearance: float
-    """Gap between parts that move past each other [m]."""
-    grip: str
-    """Kind of handle."""
-    rest: float
-    """Share of the way that they stand open, in [0, 1]."""
-
-
 def carcass(width: float, height: float, depth: float, openings: Sequence[Bay]) -> Manifold:
     """Return a body, its front in y = 0 and its floor in z = 0, with a room behind every opening."""
     body = box((-0.5 * width, 0.0, 0.0), (0.5 * width, depth, height))
