@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.generate.registry import build
 from kinematify.joints.candidate import JointEstimate
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import infer_joints
-from tests.known import KnownJoint, KnownObject, known_object, turning
+from tests.known import KnownJoint, KnownObject
 
 
 def known(blueprint: Blueprint) -> KnownObject:
@@ -56,19 +55,6 @@ def test_knobs_on_rough_shafts_turn_in_a_row() -> None:
     """Bumps hide the shaft from the search for journals, the bearing has it all the same."""
     found = estimates("oven", style="bumpy", knobs=3)
     assert all(found[f"knob_{k}"].kind.turns for k in (1, 2, 3))
-
-
-def test_thick_discs_in_a_row_are_no_buttons_for_that() -> None:
-    """Knobs of ovens and hobs stand in rows as well; flat or square caps are keys."""
-    panel = box((-0.3, 0, 0), (0.3, 0.3, 0.1))
-    knobs = {f"knob_{k}": cylinder(0.02, (x, -0.02, 0.05), (x, 0, 0.05)) for k, x in enumerate((-0.15, 0, 0.15))}
-    keys = {
-        f"key_{k}": box((x - 0.02, -0.005, 0.02), (x + 0.02, 0, 0.08)) for k, x in enumerate((-0.22, -0.075, 0.075))
-    }
-    lines = [turning("panel", name, (0, 1, 0), (0, 0, 0.05), (-1.0, 1.0)) for name in (*knobs, *keys)]
-    found = infer_joints(known_object("panel", {"panel": panel, **knobs, **keys}, *lines))
-    assert all(found[name].kind.turns and found[name].evidence["row"] == 0.0 for name in knobs)
-    assert all(found[name].kind is JointType.PRISMATIC and found[name].evidence["row"] == 1.0 for name in keys)
 
 
 def test_the_hook_of_a_crane_slides_on_its_two_ropes() -> None:

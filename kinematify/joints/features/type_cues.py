@@ -71,7 +71,6 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
         cues[boxed] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
         cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
-    cues["row"] *= 1.0 - cues["round_small"]  # knobs stand in rows as buttons do
     return cues
 
 
