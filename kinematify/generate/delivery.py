@@ -38,6 +38,7 @@ _AXES = {"width": 0, "depth": 1, "height": 2}
 _SAME = 0.02  # of a size or a range, by which it may be off
 _ASIDE = 0.02  # of the whole, by which a part is beside its middle
 _UPRIGHT, _LEVEL = 0.95, 0.2  # of the z component of an axis
+_MOTIONS = "spin lift slide pan tilt hinge"  # the narrower one first
 _SPIN = 1.45 * math.pi  # [rad] that what spins turns by at least: a knob has three quarters of a turn
 _LARGER = 30.0  # times as large or as small as usual the whole may be: toys
 _ROUND = 0.06  # of a side, by which two sides of what is round differ
@@ -734,7 +735,7 @@ def moves_so(joint: BlueprintJoint, motion: str) -> bool:
 
 def motion_of(joint: BlueprintJoint) -> str:
     """Return how a joint moves and how far from its closed pose, in words; empty where it does not."""
-    how = next((how for how in words_of("spin lift slide pan tilt hinge") if moves_so(joint, how)), "")
+    how = next((how for how in _MOTIONS.split() if moves_so(joint, how)), "")
     return f" {how} {_ranges([joint])}" if how else ""
 
 

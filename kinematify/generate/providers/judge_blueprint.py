@@ -82,7 +82,7 @@ def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold], chains: Sequ
     done = {frozenset(pair) for pair in _fixed_together(blueprint)}
     for where, values in (("Where they are drawn", dict[str, float]()), *_motions(blueprint, chains)):
         moving = {part for name in values for part in moving_with(name, blueprint.joints)} or set(solids)
-        there = {part.name: solid_of(part) for part in blueprint.moved(values).parts} if values else solids
+        there = {part.name: solid_of(part) for part in blueprint.moved(values).parts}
         for one, other in combinations(sorted(solids), 2):
             pair = frozenset((one, other))
             # parts that one joint moves stay as they are to each other

@@ -291,15 +291,19 @@ def _kind_line(family: Kind) -> str:
         f"{re.sub(r'_?[0-9]+', '', part.name)}{motion_of(joint) if (joint := made.joint_above.get(part.name)) else ''}"
         for part in made.parts
     )
-    has = ", ".join(f"{count} {part}" if count > 1 else part for part, count in parts.items())
-    return f"{family.name} ({', '.join(family.words[:2])}): {', '.join(rows) or 'no parameters'}; parts: {has}"
+    has = (f"{count} {part}" for part, count in parts.items())
+    return (
+        f"{family.name} ({', '.join(family.words[:2])}): {', '.join(rows) or 'no parameters'}; parts: {', '.join(has)}"
+    )
 
 
 def _fields(model: type[BaseModel], without: Collection[str] = ()) -> str:
     """Fields of a model with their choices and what they mean; those that may be left out in brackets."""
     fields = []
     for name, item in model.model_fields.items():
-        found = re.findall(r"'(\w[\w ]*)'", str(item.annotation).partition("Literal")[2])
+        found = re.findall(
+            r"'(\w[\w ]*)'", str(item.annotation).replace("float, typing.Literal", "").partition("Literal")[2]
+        )
         shown = f"{name}: {'|'.join(found)}" if found else name
         shown = shown if item.is_required() else f"[{shown}]"
         about = (item.description or "").rstrip(".")

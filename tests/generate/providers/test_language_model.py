@@ -82,7 +82,8 @@ def test_what_the_model_writes_is_built_and_judged(server, tmp_path):
     assert "rounded_box" in system["content"], "it is given the shapes"
     kind = next(line for line in system["content"].splitlines() if line.startswith("box (box, chest box): "))
     assert "width=0.3 m [0.06 to 2 m]" in kind, "and kinds that are near, with their parameters"
-    assert "parts: body, lid tilt 0 to " in kind, "and their parts, with how they move"
+    assert "parts: 1 body, 1 lid tilt 0 to " in kind, "and their parts, with how they move"
+    assert "[open] (How far they" in system["content"], "and no unit as if it were a value"
     assert "outline (Corners radius, height [m]; either sense)" in system["content"], "and what fields mean"
     assert len(system["content"]) < 4 * 6000, "and no more than 6,000 tokens"
     assert user["content"] == TEXT
