@@ -247,7 +247,7 @@ def kind(
         KINDS[name] = Kind(
             name=name,
             title=title or said,
-            words=(said, *phrases(words), *usually),
+            words=tuple(dict.fromkeys((said, *phrases(words), *usually))),
             parameters=(
                 *asked,
                 *details_of(details or {}),
