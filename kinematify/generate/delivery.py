@@ -735,8 +735,7 @@ def moves_so(joint: BlueprintJoint, motion: str) -> bool:
 
 def motion_of(joint: BlueprintJoint) -> str:
     """Return how a joint moves and how far from its closed pose, in words; empty where it does not."""
-    how = next((how for how in _MOTIONS.split() if moves_so(joint, how)), "")
-    return f" {how} {_ranges([joint])}" if how else ""
+    return next((f" {how} {_ranges([joint])}" for how in _MOTIONS.split() if moves_so(joint, how)), "")
 
 
 def _goes(joint: BlueprintJoint, wanted: tuple[float, float]) -> bool:
