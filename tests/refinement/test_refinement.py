@@ -301,7 +301,7 @@ def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
 
 
 def test_collision_geometry_is_cut_by_what_simulation_moved() -> None:
-    """As it is where nothing was moved yet, but for rounding; what was free is not asked again, and other joints are."""
+    """As it is where nothing was moved yet, but for rounding; what was free is not asked again; others are."""
     bad = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
     moved = {sweep.travel.joint: sweep for sweep in Simulator(bad.model, SETTINGS.geometry).judge(bad.model).sweeps}
     free = {
