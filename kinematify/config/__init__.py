@@ -19,7 +19,6 @@ from kinematify.config.joint_settings import (
     JournalConfig,
     LimitsConfig,
     RailsConfig,
-    RockersConfig,
     SweepConfig,
 )
 from kinematify.config.output_settings import CollisionConfig, ModelConfig, PreviewConfig
@@ -60,7 +59,6 @@ __all__ = [
     "PreviewConfig",
     "RailConfig",
     "RailsConfig",
-    "RockersConfig",
     "SdfConfig",
     "SeamConfig",
     "ServiceConfig",

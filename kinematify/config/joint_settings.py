@@ -158,23 +158,6 @@ class GuideConfig(StageConfig):
     """What can slide this many times its own length is no button."""
 
 
-class RockersConfig(StageConfig):
-    """Plates whose front is folded across the middle."""
-
-    facing_deg: float = 35.0  # rockers lean by 4 to 15 deg
-    """Surface within this angle of the thin direction belongs to the front or back [deg]."""
-    least_share: float = 0.15  # front and back of a plate have a third of its area each, or more
-    """Share of a part's area that its front has at least."""
-    least_samples: int = 50  # below, a median is chance
-    """Samples of each half."""
-    least_deg: float = 2.0  # flat plates of rough meshes lean less
-    """Lean of each half, to opposite sides [deg]."""
-    even_deg: float = 1.5  # halves are flat; what bulges leans by all angles
-    """Surface within this angle of the middle lean of its half is even [deg]."""
-    whole: float = 0.8  # rims and letters take up some of the front
-    """Share of each half that is even."""
-
-
 class FrontCuesConfig(StageConfig):
     """Pedals and wheels at the foot of a body."""
 
@@ -265,5 +248,4 @@ class JointsConfig(StageConfig):
     journal: JournalConfig = section()
     clearance: ClearanceConfig = section()
     guide: GuideConfig = section()
-    rockers: RockersConfig = section()
     front_cues: FrontCuesConfig = section()

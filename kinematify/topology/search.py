@@ -69,7 +69,7 @@ def spanning_edges(weights: Mapping[Pair, float], centroids: FloatArray) -> tupl
     while len(edges) < n - 1:
         reached = [part == 0 or parent >= 0 for part, parent in enumerate(parents_from(edges, n, 0))]
         a, b = nearest_pair(virtual_costs(centroids), reached)
-        edges.append((min(a, b), max(a, b)))
+        edges.append(pair(a, b))
     return tuple(sorted(edges))
 
 
@@ -80,7 +80,7 @@ def maximum_spanning_edges(weights: Mapping[Pair, float], n: int) -> tuple[Pair,
     rows, columns = np.array(list(weights)).T
     costs = 2.0 - np.array(list(weights.values()))  # positive: scipy reads a stored 0 as no edge
     forest = minimum_spanning_tree(csr_matrix((costs, (rows, columns)), shape=(n, n))).tocoo()
-    return tuple(sorted((int(min(a, b)), int(max(a, b))) for a, b in zip(forest.row, forest.col, strict=True)))
+    return tuple(sorted(pair(int(a), int(b)) for a, b in zip(forest.row, forest.col, strict=True)))
 
 
 def tree_path(edges: Sequence[Pair], n: int, ends: Pair) -> tuple[Pair, ...]:
@@ -90,7 +90,7 @@ def tree_path(edges: Sequence[Pair], n: int, ends: Pair) -> tuple[Pair, ...]:
     node = ends[1]
     while previous[node] >= 0:
         parent = previous[node]
-        steps.append((min(node, parent), max(node, parent)))
+        steps.append(pair(node, parent))
         node = parent
     return tuple(steps) if node == ends[0] else ()
 

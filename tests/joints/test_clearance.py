@@ -38,13 +38,6 @@ def test_splines_make_the_button_of_a_pen_slide() -> None:
     assert estimates("pen", mechanism="click")["button"].kind is JointType.PRISMATIC
 
 
-def test_a_lid_with_a_skirt_all_round_is_lifted_and_a_hinged_one_turns() -> None:
-    loose, hinged = estimates("box", lid="loose")["lid"], estimates("box", lid="hinged", hinge="barrel")["lid"]
-    assert loose.kind is JointType.PRISMATIC
-    assert loose.axis[2] > 0.99
-    assert hinged.kind.turns
-
-
 def test_knobs_in_a_row_turn_although_buttons_in_a_row_are_pressed() -> None:
     found = estimates("button_panel", buttons=3, columns=3, knobs=3, shape="square")
     assert all(found[f"knob_{k}"].kind.turns for k in (1, 2, 3))

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, turn_sign
+from kinematify.contact.graph import pair
+from kinematify.joints.choice.opening import clockwise_sign, is_continuous, turn_sign
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import Sweep, moving_points, slide_clearance, slide_paths, turn_paths
 from kinematify.robot.joint_type import JointType
@@ -109,10 +110,6 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Range
     if is_continuous(scene, axis, pivot, free):
         none, half, sign = LimitEnd(np.inf, ""), LimitEnd(np.pi, ""), clockwise_sign(scene, axis)
         return Range(kind=JointType.CONTINUOUS, sign=sign, back=none, ahead=none, free=(half, half))
-    if scene.fold is not None and abs(float(axis @ scene.fold.axis)) > np.cos(
-        np.radians(scene.config.limits.square_deg)
-    ):
-        return _rocker_range(scene, axis, ways)
     if scene.pedal_direction.any() and abs(float(axis @ UP)) < 0.1:
         return _pedal_range(scene, axis, pivot, ways)
     furniture = scene.mechanism <= 0.5
@@ -161,21 +158,7 @@ def _range(sign: float, back: LimitEnd, ahead: LimitEnd, free: Ways) -> Range:
     return Range(kind=JointType.REVOLUTE, sign=sign, back=back, ahead=ahead, free=free if sign > 0 else free[::-1])
 
 
-# ---- rockers and pedals --------------------------------------------------------------------------------------------
-
-
-def _rocker_range(scene: JointScene, axis: FloatArray, free: Ways) -> Range:
-    """A rocker tips until either half of its front is level with the face that it sits in; the longer way opens."""
-    fold = scene.fold
-    faces = scene.parent_frame.axes
-    thin = scene.frame.axes[scene.frame.thin]
-    face = faces[int(np.abs(faces @ thin).argmax())]
-    turns = np.zeros(2) if fold is None else fold.turns_level(face) * np.copysign(1.0, float(fold.axis @ axis))
-    reach = np.array([max(float(turns.max()), 0.0), max(-float(turns.min()), 0.0)])
-    sign = neutral_sign(scene, axis) if np.ptp(reach) < 0.1 * reach.max() else float(np.sign(reach[0] - reach[1]))
-    ends = [LimitEnd(float(angle), "level with the face around it") for angle in reach]
-    forward, backward = ends if sign > 0 else ends[::-1]
-    return _range(sign, backward, forward, free)
+# ---- pedals --------------------------------------------------------------------------------------------------------
 
 
 def _pedal_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways) -> Range:
@@ -228,7 +211,7 @@ def closing_turns(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     now = _gap(scene, axis, pivot, 0.0)
     turns, square = _square_turns(scene, axis)
     found = sorted((_gap(scene, axis, pivot, turn) / now, turn) for turn in turns)
-    possible = [pair for pair in found if pair[0] < limits.closer and _can_turn(*pair, free, scene.config)]
+    possible = [item for item in found if item[0] < limits.closer and _can_turn(*item, free, scene.config)]
     if len(possible) > 1 and possible[1][1] * possible[0][1] < 0.0 and possible[0][0] > limits.closer * possible[1][0]:
         return possible[0][1], possible[1][1]
     if square and not (_stands_on_top(scene, axis) and possible and possible[0][0] < limits.lying):
@@ -456,7 +439,7 @@ def guided_share(scene: JointScene, direction: FloatArray, travels: FloatArray) 
     Returns:
         The larger of the shares of both parts in [0, 1], shape (n,); None where the contact is not such.
     """
-    edge = scene.cache.graph.by_pair.get((min(scene.parent, scene.child), max(scene.parent, scene.child)))
+    edge = scene.cache.graph.by_pair.get(pair(scene.parent, scene.child))
     if edge is None:
         return None
     # Of small parts, the band of a contact is as wide as they are long.

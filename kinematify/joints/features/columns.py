@@ -101,6 +101,7 @@ def _cues(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
         "slide_room_parent": of_slides(slides.free_parent.max(axis=1)),
         **{f"turn_{name}": of_turns(value) for name, value in turns.cues.items()},
         **{f"slide_{name}": of_slides(value) for name, value in slides.cues.items()},
+        "slide_retired": of_slides(np.zeros(m)),  # stands for cues that went after the fit
         **{name: np.full(1 + n + m, float(value)) for name, value in facts.items()},
     }
 

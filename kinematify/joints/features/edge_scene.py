@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematify.contact.graph import pair
 from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
-from kinematify.joints.features.frames import UP, body_axes, box_frame, find_fold
+from kinematify.joints.features.frames import UP, body_axes, box_frame
 from kinematify.joints.features.journal import held_journal
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kinematify.config import FrontCuesConfig, JointsConfig
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import Rail
-    from kinematify.joints.features.frames import BoxFrame, Fold
+    from kinematify.joints.features.frames import BoxFrame
     from kinematify.joints.features.journal import Journal
     from kinematify.joints.features.workspace import ContactView, PartCache
     from kinematify.robot.arrays import BoolArray, FloatArray
@@ -358,13 +358,6 @@ class JointScene:
         """The child is a disc standing on the floor."""
         return self.whole.rolls(self.child)
 
-    @cached_property
-    def fold(self) -> Fold | None:
-        """Where the front of the child is folded as a rocker's; not looked for in large lids, which may be ridged."""
-        if not self.plate or (self.panel and self.on_top and self.flat):
-            return None
-        return find_fold(self.cache.samples(self.child), self.frame, self.config.rockers)
-
     @property
     def _stands(self) -> bool:
         """The parent reaches the floor, or nearly so, as a bin on wheels."""
@@ -444,29 +437,6 @@ def _with_journal(bearing: EdgeBearing | None, scene: JointScene, journal: Journ
         lines=(first, *lines),
         rail=None if bearing is None else bearing.rail,
     )
-
-
-def is_cap(scene: JointScene) -> bool:
-    """A lid on top, without a hinge, whose skirt reaches over the rim of its body on all four sides: a shoe box's.
-
-    Such a lid can only be lifted: about any edge, the skirt opposite would run into the rim.
-    """
-    if not (scene.on_top and scene.flat and scene.panel) or scene.journal is not None:
-        return False
-    frame = scene.frame
-    up = int(np.argmax(np.abs(frame.axes @ UP)))
-    sign = np.sign(frame.axes[up] @ UP)
-    points = frame.local(scene.cache.samples(scene.child).points)
-    height = sign * points[:, up]
-    below = height < (sign * scene.body_box[:, up]).max() - 0.25 * np.ptp(height)
-    if below.mean() > 0.5:
-        return False  # a tray or drawer, which lies in its body
-    shares = []
-    for k in np.delete(np.arange(3), up):
-        margin = 0.05 * np.ptp(points[:, k])
-        shares += [(below & (points[:, k] < points[:, k].min() + margin)).mean()]
-        shares += [(below & (points[:, k] > points[:, k].max() - margin)).mean()]
-    return bool(min(shares) > 0.015)
 
 
 def passes_gate(bearing: EdgeBearing, contact: ContactView, config: JointsConfig) -> bool:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.features.edge_scene import is_cap
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import moving_points, slide_paths
 from kinematify.joints.features.ranking import Ranked, cue_sum
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
 WEIGHTS = {
     "travel_parent": 1.0, "travel_all": 0.3, "one_way": 0.6, "flush": 0.6, "crossed": -0.5, "thin_large": -0.4,
-    "horizontal": 0.5, "along_bearing": 1.5, "along_rail": 2.5, "lift_off": 1.0, "cap": 2.5, "small_way": 1.0,
+    "horizontal": 0.5, "along_bearing": 1.5, "along_rail": 2.5, "lift_off": 1.0, "small_way": 1.0,
     "thin_small": 0.7, "normal_small": 0.7, "twin": 2.5,
 }  # fmt: skip
 """Of each cue of a slide, lengths in diagonals; as those of turns."""
@@ -122,7 +121,6 @@ def _shape_cues(scene: JointScene, axes: FloatArray, with_parent: Sweep, config:
         "horizontal": large * (1.0 - np.abs(axes @ UP)),
         "along_bearing": bearing,
         "along_rail": rail,
-        "cap": float(is_cap(scene)) * np.abs(axes @ UP),
         "thin_small": scene.smallness * thin,
         "normal_small": scene.smallness * pressed,
         "twin": _along_any(axes, scene.grips, config),

@@ -59,8 +59,7 @@ def rank_turns(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ra
         **_gravity_cues(scene, lines, with_parent),
     }
     cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
-    telling = "bearing" if scene.has_bearing else "fold"
-    bonus = BEARING_BONUS * np.array([source == telling for source in lines.sources])
+    bonus = BEARING_BONUS * np.array([source == "bearing" for source in lines.sources])
     return Ranked(
         lines=lines,
         scores=cue_sum(cues, WEIGHTS, CAP) + bonus,

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.features.edge_scene import is_cap
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import contact_clearance
 
@@ -26,8 +25,8 @@ if TYPE_CHECKING:
 
 WEIGHTS = {
     "drawer": 3.0, "box_inside": 1.5, "panel": -2.0, "tray": 3.0, "bearing": -1.5, "mechanism": -1.5, "button": 1.6,
-    "round_small": -1.5, "round_lid": 2.5, "on_moving_part": -1.0, "capped": 3.0, "latch": -2.5, "keyed": 3.0,
-    "retained": -2.5, "row": 2.4, "rocker": -2.5, "pedal": -2.5, "wheel": -3.0, "gripper": 3.0, "rail": 3.0,
+    "round_small": -1.5, "round_lid": 2.5, "on_moving_part": -1.0, "latch": -2.5, "keyed": 3.0,
+    "retained": -2.5, "row": 2.4, "pedal": -2.5, "wheel": -3.0, "gripper": 3.0, "rail": 3.0,
 }  # fmt: skip
 """Of each cue of the type, positive for sliding; their sum is a column of the fit, which was made with these."""
 BIAS, CAP = -0.8, 3.0  # log odds of sliding without any cue, and the most that one says
@@ -55,7 +54,7 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
         **_clearance_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
     }
-    held = max(cues["keyed"], cues["capped"], cues["rail"], scene.mechanism * cues["gripper"])
+    held = max(cues["keyed"], cues["rail"], scene.mechanism * cues["gripper"])
     cues["panel"] *= 1.0 - held  # a plate that cannot turn, rides on a rail or closes on its like is no door
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_inside", "tray", "round_lid"):
@@ -65,10 +64,7 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
         cues[box] *= 1.0 - whirls  # no drawer turns on a shaft
     if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < config.upright_cosine:
         cues["round_lid"] = 0.0  # a flap in pins across its mouth is not lifted off
-    cues["retained"] *= 1.0 - cues["capped"]
     cues["round_lid"] *= 1.0 - cues["retained"]  # what holds it down is turned first
-    for boxed in ("keyed", "button", "drawer", "box_inside", "row"):
-        cues[boxed] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
         cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
     return cues
@@ -195,11 +191,9 @@ def _shape_cues(scene: JointScene, turns: Ranked) -> dict[str, float]:
         "mechanism": scene.mechanism * large,
         "button": scene.smallness * float(not scene.has_bearing) * (1.0 - scene.compact) * (1.0 - edge),
         "wheel": float(scene.rolls),
-        "rocker": float(scene.fold is not None and not scene.has_bearing),
         "pedal": float(scene.pedal_direction.any()),
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
-        "capped": large * is_cap(scene),
         "latch": scene.smallness * _bridges_a_seam(scene),
         "on_moving_part": scene.parent_moves * scene.smallness,
     }

@@ -10,6 +10,7 @@ import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
+from kinematify.contact.graph import pair
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
 from kinematify.joints.features.frames import body_axes
@@ -184,7 +185,7 @@ class PartCache:
 
     def contact(self, parent: int, child: int, band: float) -> ContactView:
         """Contact samples of a pair that lie within `band` [m] beyond its gap."""
-        edge = self.graph.by_pair.get((min(parent, child), max(parent, child)))
+        edge = self.graph.by_pair.get(pair(parent, child))
         if edge is None:
             nothing = np.empty((0, 3))
             return ContactView(

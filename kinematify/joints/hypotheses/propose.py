@@ -60,8 +60,6 @@ def _turns(scene: JointScene) -> list[Proposal]:
             beyond_doubt = scene.has_bearing and not found
             found.append((line.axis, line.pivot, ELSEWHERE, "bearing" if beyond_doubt else "weak_bearing"))
     found += _contact_lines(scene)
-    if scene.fold is not None:
-        found.append((scene.fold.axis, scene.fold.point, ELSEWHERE, "fold"))
     found += _box_lines(scene)
     return found + _distinct(scene, centre_lines(scene), found)
 
