@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,7 @@ def mutants(bases: list[BaseModel]) -> list[Mutant]:
     return write_mutants(bases, 2 * len(FAULTS), seed=3)
 
 
+@cache
 def at_rest(urdf: str | Path) -> ErasedModel:
     return erase(read_robot(Path(urdf), geometry="shown"), shuffle=False)
 

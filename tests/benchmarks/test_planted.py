@@ -24,10 +24,8 @@ from kinematify.assembly.erasure import erase
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.evaluation.result_record import load_report
-from kinematify.pipeline.infer_assembly import infer
-from kinematify.pipeline.record import write_inference
 from kinematify.robot.read import read_robot
-from tests.objects import BUILDERS
+from tests.inferred import write_inferred
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,8 +34,7 @@ CONFIG = load_config()
 
 
 def written(folder: Path) -> Path:
-    write_inference(infer(BUILDERS["edge_door"]().assembly, config=CONFIG), folder, preview=False)
-    return folder / "model.urdf"
+    return write_inferred("edge_door", folder) / "model.urdf"
 
 
 @pytest.fixture(scope="module")

@@ -18,9 +18,8 @@ from lxml import etree
 
 from examples.make_cabinet import JOINTS, TrueJoint
 from kinematify.cli.app import run
-from tests.places import ROOT
+from tests.inferred import EXAMPLE
 
-CABINET = ROOT / "examples" / "cabinet"
 BOX = trimesh.creation.box()
 
 
@@ -30,6 +29,7 @@ class Made:
 
     folder: Path
     answer: dict[str, Any]
+    said: str
     stderr: str
 
 
@@ -37,10 +37,11 @@ class Made:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     """Infer the cabinet once, in a process of its own."""
     folder = tmp_path_factory.mktemp("infer") / "cabinet"
-    words = [sys.executable, "-m", "kinematify", "infer", str(CABINET), "-o", str(folder), "--json", "-"]
+    answer = folder.with_suffix(".json")
+    words = [sys.executable, "-m", "kinematify", "infer", str(EXAMPLE), "-o", str(folder), "--json", str(answer)]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    return Made(folder, json.loads(done.stdout), done.stderr)
+    return Made(folder, json.loads(answer.read_text()), done.stdout, done.stderr)
 
 
 def world_pivots(urdf: Path) -> dict[str, np.ndarray]:
@@ -76,6 +77,14 @@ def test_progress_is_on_stderr_in_plain_lines(made: Made) -> None:
     assert lines[0].endswith("reading the parts")
     assert lines[-1].endswith("done")
     assert all(line.startswith(("[", "Lengths: ")) for line in lines)
+    assert "900 mm x" in next(line for line in lines if line.startswith("Lengths: "))
+    assert made.stderr.index("Lengths: ") < made.stderr.index("contacts"), "before the work"
+
+
+def test_it_ends_with_the_verdict_on_what_it_wrote(made: Made) -> None:
+    *_, loaded, verdict = made.said.splitlines()
+    assert loaded.startswith("as loaded: MuJoCo 5 of 5 joints move, PyBullet 5 of 5")
+    assert verdict.startswith(("PASS", "WARN"))
 
 
 @pytest.mark.parametrize("truth", JOINTS, ids=lambda joint: joint.child)
@@ -171,7 +180,7 @@ def test_bad_input_ends_with_2_and_one_paragraph(
 def test_bad_options_end_with_2(
     words: list[str], text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["infer", str(CABINET), "-o", str(tmp_path / "out"), *words]) == 2
+    assert run(["infer", str(EXAMPLE), "-o", str(tmp_path / "out"), *words]) == 2
     message = capsys.readouterr().err.splitlines()[-1]
     assert message.startswith("Error: ")
     assert text in message
@@ -181,13 +190,13 @@ def test_bad_options_end_with_2(
 def test_existing_folders_are_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     for force in ([], ["--force"]):
-        assert run(["infer", str(CABINET), "-o", str(tmp_path), *force]) == 2
+        assert run(["infer", str(EXAMPLE), "-o", str(tmp_path), *force]) == 2
         assert str(tmp_path) in capsys.readouterr().err
         assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 
 def test_interruption_leaves_nothing(tmp_path: Path) -> None:
-    words = [sys.executable, "-m", "kinematify", "infer", str(CABINET), "-o", str(tmp_path / "deep" / "out")]
+    words = [sys.executable, "-m", "kinematify", "infer", str(EXAMPLE), "-o", str(tmp_path / "deep" / "out")]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     assert "reading the parts" in process.stderr.readline()

@@ -20,12 +20,12 @@ import kinematify
 import kinematify.envs
 from kinematify.cli.app import run
 from kinematify.errors import InputError
-from kinematify.pipeline.infer_assembly import infer
 from kinematify.processes.lock import writing
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.loop import repaired
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
+from tests.inferred import EXAMPLE, inferred
 from tests.places import ROOT
 
 if TYPE_CHECKING:
@@ -69,19 +69,8 @@ def cabinet(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def test_infer_ends_with_the_verdict_on_what_it_wrote(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["infer", str(ROOT / "examples" / "cabinet"), "-o", str(tmp_path / "out"), "--no-preview"]) == 0
-    said = capsys.readouterr()
-    *_, loaded, verdict = said.out.splitlines()
-    assert loaded.startswith("as loaded: MuJoCo 5 of 5 joints move, PyBullet 5 of 5")
-    assert verdict.startswith(("PASS", "WARN"))
-    lengths = next(line for line in said.err.splitlines() if line.startswith("Lengths: "))
-    assert "900 mm x" in lengths
-    assert said.err.index("Lengths: ") < said.err.index("contacts"), "before the work"
-
-
 def test_a_range_that_ends_in_another_part_is_cut_unless_a_hint_asks_for_it() -> None:
-    found = infer(ROOT / "examples" / "cabinet")
+    found = inferred("cabinet")
     asked = parse_hints(["drawer_left:range=-80..300mm"], found.assembly.names)
     wide = with_hints(found, asked)
     assert repaired(wide).joints == wide.joints, "the user has decided"
@@ -105,7 +94,7 @@ def test_an_unrepaired_model_is_refused_in_one_traceback(cabinet: Path, tmp_path
 @pytest.mark.parametrize(
     "words",
     [
-        ["infer", str(ROOT / "examples" / "cabinet")],
+        ["infer", str(EXAMPLE)],
         ["generate", "a cabinet with two doors"],
         ["refine", "{model}"],
         ["export", "{model}", "--to", "mjcf"],
@@ -147,7 +136,7 @@ def test_fix_writes_nothing_where_nothing_is_to_be_changed(
 
 
 def test_a_hint_of_a_parent_leaves_no_loop_joint() -> None:
-    found = infer(ROOT / "examples" / "cabinet")
+    found = inferred("cabinet")
     names = found.assembly.names
     moved = with_hints(found, parse_hints(["knob:parent=door_left"], names))
     assert moved.model.robot.joint_by_name["knob_joint"].parent == "door_left"

@@ -23,9 +23,9 @@ from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded
 from kinematify.pipeline.infer_assembly import infer
-from kinematify.pipeline.record import write_inference
 from kinematify.pipeline.stages import rank_trees
 from kinematify.robot.joint_type import JointType
+from tests.inferred import write_inferred
 from tests.objects import BUILDERS
 from tests.topology.topology_objects import evidence_of, graph_of, stat
 
@@ -71,8 +71,7 @@ def test_bench_tells_the_cost_of_the_true_joint_beside_that_of_the_chosen_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for kind in ("robots", "everyday"):
-        door = infer(BUILDERS["edge_door"]().assembly, config=load_config())
-        write_inference(door, tmp_path / "data" / kind / "door", preview=False)
+        write_inferred("edge_door", tmp_path / "data" / kind / "door")
     monkeypatch.setenv("KINEMATIFY_BENCH", str(tmp_path / "data"))
     monkeypatch.chdir(tmp_path)
     words = ["bench", "paper", "--sets", "everyday", "--everyday", "*", "--poses", "rest", "--jobs", "1", "-o", "out"]

@@ -4,48 +4,38 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from kinematify.cli.inferred import describe
-from kinematify.pipeline.infer_assembly import infer
-from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.linkages import SharedAxis, close_chains
-from kinematify.pipeline.record import write_inference
 from kinematify.robot.linkage import loop_gaps
 from kinematify.robot.read import read_robot
-from tests.household import edge_door, four_bars
+from tests.inferred import inferred, write_inferred
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
-@cache
-def inferred() -> Inference:
-    return infer(four_bars().assembly)
-
-
 def test_the_pin_that_was_cut_is_reported_with_the_chain_and_the_reason(tmp_path: Path) -> None:
-    (chain,) = inferred().closed_chains
+    (chain,) = inferred("four_bars").closed_chains
     assert len(chain.joints) == 3, "four pins, of which one was cut"
     assert abs(float(chain.line.axis[2])) > 0.999
     assert chain.opening.distance > 0.02
-    messages = describe(inferred(), tmp_path)
+    messages = describe(inferred("four_bars"), tmp_path)
     assert f"Closed chain: {chain.description}" in messages
     assert all(part in chain.description for part in chain.parts)
 
 
 def test_what_does_not_close_is_not_reported() -> None:
-    assert infer(edge_door().assembly).closed_chains == ()
+    assert inferred("edge_door").closed_chains == ()
 
 
 def test_the_model_has_the_loop_and_one_range_and_its_pin_stays_closed(tmp_path: Path) -> None:
     """The four bars are a parallelogram: the bars follow by <mimic>, and what is written holds what was inferred."""
-    folder = tmp_path / "model"
-    write_inference(inferred(), folder, preview=False)
+    folder = write_inferred("four_bars", tmp_path / "model")
     record = json.loads((folder / "inference.json").read_text())
     (item,) = record["closed_chains"]
     robot = read_robot(folder / "model.urdf")
@@ -59,12 +49,12 @@ def test_the_model_has_the_loop_and_one_range_and_its_pin_stays_closed(tmp_path:
     assert float(crank.axis @ rocker.axis) > 0.0, "congruent arms turn the same way"
     assert (crank.lower, crank.upper) == pytest.approx((rocker.lower, rocker.upper))
     for value in np.linspace(driver.lower, driver.upper, 9):
-        assert loop_gaps(robot, {driver.name: float(value)})[loop.name] < 5e-4 * inferred().assembly.diagonal
+        assert loop_gaps(robot, {driver.name: float(value)})[loop.name] < 5e-4 * inferred("four_bars").assembly.diagonal
 
 
 def test_a_pin_that_would_leave_no_motion_is_reported_and_not_written() -> None:
     """A bar between ground and rocker is a rigid triangle."""
-    model = inferred().model
+    model = inferred("four_bars").model
     free = replace(model, loops=(), joints=tuple(replace(joint, mimic=None, closure=None) for joint in model.joints))
     up, at = np.array([0.0, 0.0, 1.0]), np.array([0.05, 0.03, 0.0])
     pins = [SharedAxis(links=("ground", "coupler"), axis=up, pivot=at + 0.02)]

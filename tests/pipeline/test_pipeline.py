@@ -14,11 +14,12 @@ from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
-from kinematify.pipeline.record import inference_record, write_inference
+from kinematify.pipeline.record import inference_record
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about
 from tests.engines import read_pinocchio
+from tests.inferred import inferred, write_inferred
 from tests.objects import BUILDERS, KnownObject, posed, shuffled
 
 if TYPE_CHECKING:
@@ -32,11 +33,6 @@ DEFAULT, PAPER = load_config(), load_config("paper")
 @cache
 def built(name: str) -> KnownObject:
     return BUILDERS[name]()
-
-
-@cache
-def inferred(name: str) -> Inference:
-    return infer(built(name).assembly, config=DEFAULT)
 
 
 @dataclass(frozen=True)
@@ -161,8 +157,7 @@ def test_the_model_at_zero_is_the_input(name: str, tmp_path: Path) -> None:
     poses = forward_kinematics(inference.model.robot, {})
     for link in inference.model.links:
         assert np.allclose(poses[link.name], link.T_world_link, atol=1e-12)
-    write_inference(inference, tmp_path / "out", preview=False)
-    reading = read_pinocchio(tmp_path / "out" / "model.urdf", {})
+    reading = read_pinocchio(write_inferred(name, tmp_path / "out") / "model.urdf", {})
     assert set(reading.vertices) == set(parts)
     for link, vertices in reading.vertices.items():
         given = parts[link].bounds

@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
 
-from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointEstimate
-from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.refinement.hints import Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType
-from tests.objects import BUILDERS
+from tests.inferred import inferred
 
 PARTS = ("body", "door_1", "door_2", "lid")
-
-
-@cache
-def inferred(name: str) -> Inference:
-    return infer(BUILDERS[name]().assembly, config=load_config())
 
 
 def joint_of(inference: Inference, part: str) -> JointEstimate:

@@ -26,20 +26,15 @@ from kinematify.refinement.choose import LEAD_ELSEWHERE, Chooser, Trial
 from kinematify.refinement.folder import open_model_folder, read_record
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.joint_plan import Plan
-from kinematify.refinement.loop import refine
+from kinematify.refinement.loop import Refinement, refine
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
-from tests.objects import BUILDERS
+from tests.inferred import inferred, write_inferred
 
 CONFIG = load_config()
 SETTINGS = load_settings()
-
-
-@cache
-def inferred(name: str) -> Inference:
-    return infer(BUILDERS[name]().assembly, config=CONFIG)
 
 
 def joint_above(inference: Inference, child: str) -> JointEstimate:
@@ -67,6 +62,16 @@ def mistaken(inference: Inference, child: str, axis: tuple[float, float, float],
     )  # fmt: skip
 
 
+def askew() -> Inference:
+    """The drawer along the front."""
+    return mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+
+
+@cache
+def refined() -> Refinement:
+    return refine(askew())
+
+
 @pytest.mark.parametrize("name", ["drawer", "lever"])
 def test_what_is_right_stays_as_it_is(name: str) -> None:
     before = inferred(name)
@@ -79,7 +84,7 @@ def test_what_is_right_stays_as_it_is(name: str) -> None:
 
 def test_a_drawer_along_the_wrong_axis_finds_the_right_one_again() -> None:
     right = joint_above(inferred("drawer"), "drawer")
-    refinement = refine(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)))
+    refinement = refined()
     found = joint_above(refinement.inference, "drawer")
     assert refinement.history.rounds[0].errors > 0
     assert refinement.history.rounds[refinement.history.kept].errors == 0
@@ -108,7 +113,7 @@ def test_a_joint_that_is_stopped_after_a_hair_moves_however_shallow_the_contact(
 
 
 def test_a_hint_is_kept_against_failures_and_both_are_reported() -> None:
-    start = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    start = askew()
     hinted = with_hints(start, parse_hints(["drawer:axis=x"], start.assembly.names))
     blocked = with_joint(hinted, "drawer", lower=-0.2, upper=0.2)
     refinement = refine(blocked)
@@ -176,7 +181,7 @@ def test_what_no_near_best_joint_can_move_is_fixed_with_its_evidence() -> None:
 
 def test_the_best_round_is_kept_even_if_later_ones_are_worse(monkeypatch: pytest.MonkeyPatch) -> None:
     good = inferred("drawer")
-    worse = mistaken(good, "drawer", (1.0, 0.0, 0.0))
+    worse = askew()
 
     def choose_badly(self: loop._Loop, done: loop._Done) -> object:
         change = loop.PlanChange(part="drawer", what="axis", before="a", after="b", why="planted")
@@ -190,39 +195,39 @@ def test_the_best_round_is_kept_even_if_later_ones_are_worse(monkeypatch: pytest
 
 
 def test_rounds_are_bounded() -> None:
-    start = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    start = askew()
     history = refine(start, rounds=0).history
     assert len(history.rounds) == 1
     assert history.candidates == 0
 
 
 def test_history_is_written_and_a_second_refinement_goes_on_from_the_first(tmp_path: Path) -> None:
-    refined = refine(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)))
-    write_inference(refined.inference, tmp_path / "out", preview=False)
+    found = refined().inference
+    write_inference(found, tmp_path / "out", preview=False)
     record = json.loads((tmp_path / "out" / "inference.json").read_text())
     assert record["refinement"]["kept"] == 1
     assert [item["number"] for item in record["refinement"]["rounds"]] == [0, 1]
     assembly, config = open_model_folder(tmp_path / "out")
-    assert assembly.names == refined.inference.assembly.names
-    for one, other in zip(assembly.parts, refined.inference.assembly.parts, strict=True):
+    assert assembly.names == found.assembly.names
+    for one, other in zip(assembly.parts, found.assembly.parts, strict=True):
         assert np.abs(one.bounds - other.bounds).max() < 1e-6
     assert config == CONFIG
 
 
 def test_refine_command_and_its_refusals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    write_inference(inferred("drawer"), out, preview=False)
+    write_inferred("drawer", out)
     (out / "notes.txt").write_text("mine")
-    before, refined = file_hashes(out), tmp_path / "refined"
-    assert run(["refine", str(out), "-o", str(refined), "--no-preview", "--json", "-"]) == 0
+    before, other = file_hashes(out), tmp_path / "refined"
+    assert run(["refine", str(out), "-o", str(other), "--no-preview", "--json", "-"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert answer["passes"]
     assert answer["refinement"]["kept"] == 0
-    assert answer["out"] == str(refined)
+    assert answer["out"] == str(other)
     assert file_hashes(out) == before
     assert "refinement" not in read_record(out) or read_record(out)["refinement"] is None
-    assert read_record(refined)["refinement"]["kept"] == 0
-    assert (refined / "notes.txt").read_text() == "mine"
+    assert read_record(other)["refinement"]["kept"] == 0
+    assert (other / "notes.txt").read_text() == "mine"
     assert run(["refine", str(out), "--force", "--no-preview"]) == 0
     assert "Kept: the model as it was inferred" in capsys.readouterr().out
     assert read_record(out)["refinement"]["kept"] == 0
@@ -238,8 +243,8 @@ def test_refine_command_and_its_refusals(tmp_path: Path, capsys: pytest.CaptureF
 
 def test_refine_replaces_no_folder_unasked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out, other = tmp_path / "out", tmp_path / "other"
-    write_inference(inferred("drawer"), out, preview=False)
-    write_inference(inferred("drawer"), other, preview=False)
+    write_inferred("drawer", out)
+    write_inferred("drawer", other)
     before = read_record(out)
     refusals = {
         (): ["The refined model would replace the one in", "Give -o OUT"],
@@ -259,7 +264,7 @@ def test_refine_replaces_no_folder_unasked(tmp_path: Path, capsys: pytest.Captur
 
 
 def test_a_folder_without_candidates_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write_inference(inferred("drawer"), tmp_path / "out", preview=False)
+    write_inferred("drawer", tmp_path / "out")
     path = tmp_path / "out" / "inference.json"
     record = json.loads(path.read_text())
     for joint in record["joints"]:
@@ -273,7 +278,7 @@ def test_ctrl_c_in_the_middle_of_a_trial_keeps_the_best_round_and_a_whole_folder
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "out"
-    write_inference(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), out, preview=False)
+    write_inference(askew(), out, preview=False)
     whole = Chooser.trial
 
     def stopped(self: Chooser, joint: JointEstimate, score: float) -> Trial:
@@ -290,7 +295,7 @@ def test_ctrl_c_in_the_middle_of_a_trial_keeps_the_best_round_and_a_whole_folder
 
 
 def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
-    bad = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    bad = askew()
     mine = Simulator(bad.model, SETTINGS.geometry).judge(bad.model).findings
     write_inference(bad, tmp_path / "out", preview=False)
     checks = ["KV301", "KV302", "KV303", "KV310", "KV311", "KV312", "KV320", "KV321"]
@@ -302,7 +307,7 @@ def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
 
 def test_collision_geometry_is_cut_by_what_simulation_moved() -> None:
     """As it is where nothing was moved yet, but for rounding; what was free is not asked again; others are."""
-    bad = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    bad = askew()
     moved = {sweep.travel.joint: sweep for sweep in Simulator(bad.model, SETTINGS.geometry).judge(bad.model).sweeps}
     free = {
         name: replace(sweep, sides=tuple(replace(side, meetings=()) for side in sweep.sides))

@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.pipeline.infer_assembly import infer
-from kinematify.pipeline.record import write_inference
 from kinematify.refinement.folder import read_record
 from kinematify.refinement.hints import Hint
 from kinematify.robot.joint_type import JointType
@@ -19,7 +17,7 @@ from kinematify.view.alternatives import JointAlternative
 from kinematify.view.inference_view import shown_with
 from kinematify.view.keep import ModelFolder
 from kinematify.view.viewer_scene import ViewScene
-from tests.objects import BUILDERS
+from tests.inferred import write_inferred
 from tests.view.pages import candidates_in
 
 if TYPE_CHECKING:
@@ -28,8 +26,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    write_inference(infer(BUILDERS["edge_door"]().assembly), tmp_path / "model", preview=False)
-    return tmp_path / "model"
+    return write_inferred("edge_door", tmp_path / "model")
 
 
 def test_keeping_writes_the_joint_the_hint_and_the_command_and_can_be_taken_back(folder: Path) -> None:
@@ -94,7 +91,7 @@ def test_what_was_set_by_hand_is_written_with_its_limits(folder: Path) -> None:
 
 def test_another_parent_is_written_as_a_hint_and_can_be_taken_back(tmp_path: Path) -> None:
     folder = tmp_path / "model"
-    write_inference(infer(BUILDERS["toilet"]().assembly), folder, preview=False)
+    write_inferred("toilet", folder)
     record = read_record(folder)
     (lid,) = (joint for joint in record["joints"] if joint["child"] == "lid")
     other = "seat" if lid["parent"] == "bowl" else "bowl"

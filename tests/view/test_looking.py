@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.robot.read import read_robot
-from tests.objects import BUILDERS
+from tests.inferred import inferred
 from tests.view.pages import limited, served
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ def other_values(widget: Any) -> Iterator[Any]:
 @pytest.mark.parametrize(("number", "name"), [(0, "toilet"), (1, "nested_drawer"), (2, "universal_joint")])
 def test_clicks_and_widgets_that_the_program_sets_change_no_byte(number: int, name: str, tmp_path: Path) -> None:
     folder = tmp_path / "model"
-    found = infer(BUILDERS[name]().assembly)
+    found = inferred(name)
     names, tree = found.assembly.names, found.trees[0]
     leaf = next(child for _, child in reversed(list(tree.edges())))
     other = next(part for part in names if part not in (names[leaf], names[tree.parents[leaf]]))

@@ -6,10 +6,8 @@ import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from kinematify.pipeline.infer_assembly import infer
-from kinematify.pipeline.record import write_inference
 from tests.browser import opened
-from tests.objects import BUILDERS
+from tests.inferred import write_inferred
 from tests.view.pages import PATIENCE, mistakes, press, served
 
 if TYPE_CHECKING:
@@ -40,7 +38,7 @@ def read_only(folder: Path) -> Iterator[None]:
 
 def test_a_read_only_folder_is_reported_and_stays_as_it_is(tmp_path: Path) -> None:
     folder = tmp_path / "safe" / "model"
-    write_inference(infer(BUILDERS["edge_door"]().assembly), folder, preview=False)
+    write_inferred("edge_door", folder)
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     with served(folder, 18170) as window, opened(window.url) as (page, reported):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
