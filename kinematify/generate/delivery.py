@@ -555,7 +555,7 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
         yield f"not hinged on the {part.hinge}"
     how = part.motion
     joints = list(_serving(made, names, how or "move"))
-    if how and not (joints and all(moves_so(joint, how) for joint in joints)):
+    if how and not ((joints or how == "fixed") and all(moves_so(joint, how) for joint in joints)):
         kinds = listed(sorted({joint.kind.value for joint in joints} or {"part of the base"}))
         yield f"{how} was asked for, it is {kinds}"
         return

@@ -102,7 +102,7 @@ class Repetition(_Described):
     """Something stands there several times: evenly about an axis, the first where it is given, or evenly over a way."""
 
     count: Annotated[int, Field(ge=1, le=60)] | Name
-    """How often; in the file of an object that sentences ask for it may be the name of one of its `counts`."""
+    """How often, 60 times at most; in the file of a kind it may be the name of one of its `counts`."""
     about: Literal["x", "y", "z"] = "z"
     """Direction of the axis."""
     through: Vector = (0.0, 0.0, 0.0)
@@ -131,7 +131,7 @@ class _Placed(_Described):
     rpy: tuple[Angle, Angle, Angle] = (0.0, 0.0, 0.0)
     """Turns about the fixed x, y and z axes, in this order [rad], as in URDF."""
     mirrored: tuple[Literal["x", "y", "z"], ...] = ()
-    """It stands on the other side, too: across the plane through the world's origin that this axis is normal to."""
+    """A list: it stands across the plane through the world's origin that each axis is normal to, too."""
     repeated: Repetition | None = None
     """How often it stands there."""
 

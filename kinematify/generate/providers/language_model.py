@@ -67,6 +67,7 @@ A request:
 A blueprint:
 - Everything is drawn closed, and that is zero of every joint: "lower" and "upper" contain zero, "value" is where a
   joint is shown. A joint with "mimic" has no "value" of its own. The part that no joint carries is the base.
+  A range without zero is drawn at its lower end: what tilts from 20 to 60 deg is drawn at 20, with 0 to 40.
 - Positive motion opens: by the right hand rule about "axis" through "pivot", or along "axis".
 - "xyz" is the centre of a shape; of a lathe or prism the origin of its outline. "rpy" turns about fixed x, y, z.
   Shapes with an "axis" are drawn about it, z if none is given: "length" along it, half to either side, the foot of a
@@ -82,6 +83,7 @@ A blueprint:
 A checklist:
 - One fact for each thing that the user asks for and that can be measured: how many, how large, where, which colour, how
   it moves and how far. All that is said of the same parts is one fact, for one joint serves one fact of motion.
+  There is one at least: a bare name asks for the part that makes the thing work.
 - "parts" are all the parts it is true of, by the names in the blueprint, or nouns such as "drawer" of a request.
   Without "parts" it is of the whole: its size, and the colour or material of most of it. On each side: one fact a side.
 """
@@ -283,9 +285,12 @@ def question(prompt: Prompt) -> list[dict[str, Any]]:
 
 
 def _kind_line(family: Kind) -> str:
-    shown = [item for item in family.parameters if item.name not in ("modeling", "clearance")]
-    shown = [item for item in shown if item.bounds is None or item.bounds[0] < item.bounds[1]][:_PARAMETERS]
-    rows = [f"{name}={default} [{values}]" for name, default, values, _ in parameter_rows(shown)]
+    shown = [
+        item
+        for item in family.parameters
+        if item.name not in ("modeling", "clearance") and (item.bounds is None or item.bounds[0] < item.bounds[1])
+    ]
+    rows = [f"{name}={default} [{values}]" for name, default, values, _ in parameter_rows(shown[:_PARAMETERS])]
     made = build(family, {})
     parts = Counter(
         f"{re.sub(r'_?[0-9]+', '', part.name)}{motion_of(joint) if (joint := made.joint_above.get(part.name)) else ''}"

@@ -132,6 +132,8 @@ LID = {"phrase": "a lid", "parts": ["lid"]}
         ({"relation": "below", "to": ["body"]}, "lid: not below body"),
         ({"relation": "inside", "to": ["body"]}, "lid: not inside body"),
         ({"parts": ["body"], "relation": "inside", "to": ["body"]}, ""),
+        ({"parts": ["body"], "motion": "fixed"}, ""),
+        ({"motion": "fixed"}, "fixed was asked for, it is revolute"),
         ({"relation": "between", "to": ["body", "door"]}, "lid: not between body"),
         ({"relation": "above", "to": ["roof"]}, "lid: not above roof, which is no part"),
     ],
