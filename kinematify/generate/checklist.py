@@ -10,8 +10,18 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from kinematify.errors import InputError
-from kinematify.generate.delivery import OWN_LOOK, SHOWN, closed, names_called, part_faults, size_faults, stem_of
+from kinematify.generate.delivery import (
+    OWN_LOOK,
+    SHOWN,
+    closed,
+    is_coupled,
+    names_called,
+    part_faults,
+    size_faults,
+    stem_of,
+)
 from kinematify.generate.library.kind import Kind
+from kinematify.generate.procedural.blueprint_file import problems
 from kinematify.generate.procedural.materials import MATERIALS
 from kinematify.generate.request import PartRequest, listed
 
@@ -32,8 +42,13 @@ class Fact(PartRequest):
 
     phrase: str = Field(description="Words of the user.")
     parts: tuple[str, ...] = Field((), description="Names of the parts that are it; none for the whole.")
-    relation: Literal["above", "below", "left of", "right of", "behind", "in front of", "between", "inside"] | None = (
-        Field(None, description="Of the middle of each of them to the middles of all others; inside: to their box.")
+    relation: (
+        Literal["above", "below", "left of", "right of", "behind", "in front of", "between", "inside", "coupled to"]
+        | None
+    ) = Field(
+        None,
+        description="Of the middle of each of them to the middles of all others; inside: to their box; coupled to: one "
+        "joint leads all of both.",
     )
     to: tuple[str, ...] = Field((), description="Names of the parts that the relation is to.")
     extended: bool = Field(False, description="The size of the whole is not that closed, but with all joints at upper.")
@@ -50,9 +65,7 @@ def read_facts(values: Any) -> tuple[Fact, ...]:
     try:
         return tuple(Fact.model_validate(item) for item in values)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        place = ".".join(map(str, first["loc"]))
-        raise InputError(f"A fact of the checklist cannot be used: {place}: {first['msg']}.") from error
+        raise InputError(f"A fact of the checklist cannot be used: {problems(error)}.") from error
 
 
 def broken_facts(blueprint: Blueprint, facts: Sequence[Fact], family: Kind | None = None) -> list[str]:
@@ -93,7 +106,12 @@ def _broken(blueprint: Blueprint, fact: Fact, kind: Kind) -> Iterator[str]:
     else:
         yield from size_faults(_extended(blueprint) if fact.extended else blueprint, fact.size)
         parts = [part for part in shut.parts if not _look(part).endswith(OWN_LOOK)]
-    if fact.relation and parts and not (its and _stand(fact.relation, parts, its)):
+    coupled = is_coupled(blueprint, [*names, *to])
+    if (
+        fact.relation
+        and parts
+        and not (its and (coupled if fact.relation == "coupled to" else _stand(fact.relation, parts, its)))
+    ):
         others = [part.name for part in its] or [f"{' or '.join(fact.to)}, which is no part"]
         yield f"{listed([part.name for part in parts])}: not {fact.relation} {listed(others)}"
     if (fact.color or fact.material) and parts:

@@ -620,10 +620,15 @@ def _has_shade(made: Blueprint, names: Sequence[str], shade: str) -> bool:
     return all(value < _DARK if shade == "dark" else value > _DARK for value in grey)
 
 
-def _is_coupled(made: Blueprint, names: Sequence[str], _said: object) -> bool:
-    """True if one joint leads all those of some parts."""
-    joints = [made.joint_above[name] for name in names if name in made.joint_above]
-    return len({joint.mimic.joint if joint.mimic else joint.child for joint in joints}) == 1
+def is_coupled(made: Blueprint, names: Sequence[str], _said: object = None) -> bool:
+    """Return True if one joint leads some parts, or a loop does; what is fixed moves with what carries it."""
+    leaders = set()
+    for name in names:
+        joint = made.joint_above.get(name)
+        while joint and joint.kind is JointType.FIXED:
+            joint = made.joint_above.get(joint.parent)
+        leaders.add(joint and (joint.mimic.joint if joint.mimic else joint.child))
+    return len(leaders) == 1 or bool(made.loops)
 
 
 def _on_both_sides(made: Blueprint, names: Sequence[str], _said: object) -> bool:
@@ -702,7 +707,7 @@ CHECKS: Mapping[str, tuple[Callable[[Blueprint, Sequence[str], Any], bool], str]
     "sides": (_has_sides, "no side of it is as long as asked for"),
     "levels": (_stands_at, "not so high at the ends of its way"),
     "shade": (_has_shade, "not {}"),
-    "coupled": (_is_coupled, "they do not move together"),
+    "coupled": (is_coupled, "they do not move together"),
 }
 """What is said of parts and is no field of a request -> how it is measured, and what is said where it is otherwise."""
 

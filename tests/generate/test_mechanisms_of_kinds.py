@@ -23,6 +23,9 @@ from kinematify.robot.joint_type import JointType
         ("lead_screw", 1, "screw"),
         ("bass_drum", 1, "pedal"),
         ("cantilever_box", 3, "arm_front_1"),
+        ("trash_can", 1, "lid"),
+        ("umbrella", 8, "runner"),
+        ("adjustable_wrench", 1, "jaw"),
     ],
 )
 def test_what_one_moves_the_others_follow(kind, followers, leader):

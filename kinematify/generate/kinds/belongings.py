@@ -160,18 +160,16 @@ def umbrella(
     # A straight grip, or a crook whose lowest place is the ground.
     def handle_of() -> Sequence[Manifold]:
         if handle == "straight":
-            found = [cylinder(0.013, 0, grip, segments=32)]
-        else:
-            bend = 0.03
-            thick = 0.009
-            level = bend + thick
-            hook = ring(bend, thick, 180.0).rotate((-90, 0, 0)).translate((bend, 0, level))
-            found = [
-                hook,
-                cylinder(thick, level - 0.0001, grip, segments=32),
-                rod(thick, 2.0 * bend, 0, (level, level + 0.012)),
-            ]
-        return found
+            return [cylinder(0.013, 0, grip, segments=32)]
+        bend = 0.03
+        thick = 0.009
+        level = bend + thick
+        hook = ring(bend, thick, 180.0).rotate((-90, 0, 0)).translate((bend, 0, level))
+        return [
+            hook,
+            cylinder(thick, level - 0.0001, grip, segments=32),
+            rod(thick, 2.0 * bend, 0, (level, level + 0.012)),
+        ]
 
     # A thin plate that hangs from the origin, as wide as its neighbours allow while all hang down.
     def slat_of(circle: float, longest: float) -> Manifold:
@@ -209,12 +207,12 @@ def umbrella(
     for k in range(ribs):
         angle = 2.0 * pi * k / ribs
         name = f"rib_{k + 1}"
-        its_degrees = degrees(angle)
-        w.part("shaft", forked.translate((0, -circle, top)).rotate((0, 0, its_degrees)))
-        w.part(name, slat.translate((0, -circle, top)).rotate((0, 0, its_degrees)))
+        for part, its in (("shaft", forked), (name, slat)):
+            w.part(part, its.translate((0, -circle, top)).rotate((0, 0, degrees(angle))))
         axis = (-cos(angle), -sin(angle), 0)
         pivot = (circle * sin(angle), -circle * cos(angle), top)
         w.hinge(name, "shaft", axis, pivot, opens, rest=open * opens)
+        w.follow(name, "runner", opens / way)
     w.settle()
 
 

@@ -377,8 +377,7 @@ def trash_can(
         seat = 0.04
         w.part("body", bin(base), slab(seat, (0.8 * half, half + 0.002), (height - 0.03, height)))
         w.cut("body", inside(half, height))
-        back = slab(seat, (0.0, half + 0.002), (level, level + thick))
-        w.part("lid", cover(0.0, level, level + thick), back)
+        w.part("lid", cover(0.0, level, level + thick), slab(seat, (0.0, half + 0.002), (level, level + thick)))
         edge = BackEdge(y=half + 0.002, level=level, below=0.03, above=thick, clearance=clearance)
         pivot = add_barrels(w, "lid", parent="body", edge=edge, places=(0.0,), length=2.0 * seat, radius=0.004)
         w.hinge("lid", "body", (-1, 0, 0), pivot, 1.5, rest=open * 1.5)
@@ -393,11 +392,13 @@ def trash_can(
         hole = ((pin[0][0] - 0.002, back_2, level_2), (pin[1][0] + 0.002, back_2, level_2))
         w.cut("body", slot, bore(radius, clearance, *hole))
         inner = wide - max(clearance, 0.0005)
-        arm = slab(inner, (tip + 0.02, back_2), (level_2 - radius, level_2 + radius))
-        plate = slab(1.6 * wide, (tip, tip + 0.035), (level_2 - radius, level_2 + radius))
+        high = (level_2 - radius, level_2 + radius)
+        arm = slab(inner, (tip + 0.02, back_2), high)
+        plate = slab(1.6 * wide, (tip, tip + 0.035), high)
         hub = cylinder(1.4 * radius, (-inner, inner), back_2, level_2)
         w.part("pedal", arm, plate, hub, cylinder(radius, *pin), look="steel")
         w.hinge("pedal", "body", (1, 0, 0), (0, back_2, level_2), pedal, rest=open * pedal)
+        w.follow("pedal", "lid", pedal / 1.5)
     elif lid == "swing":
         # A flap in the mouth on two pins in the side walls.
         half_2 = 0.5 * width

@@ -551,7 +551,7 @@ def described_blueprint(values: Mapping[str, Any], *, source: str = "blueprint")
     try:
         described = BlueprintDescription.model_validate(values)
     except ValidationError as error:
-        raise InputError(f"The {source} cannot be built: {_problems(error)}.") from error
+        raise InputError(f"The {source} cannot be built: {problems(error)}.") from error
     builder = ObjectBuilder(described.category)
     for part in described.parts:
         solid = part.solid({})
@@ -604,12 +604,11 @@ def _refuse_twice(names: Sequence[str], what: str) -> None:
         raise ValueError(f"several {what} {', '.join(sorted(twice))}")
 
 
-def _problems(error: ValidationError) -> str:
-    found = [_problem(item["loc"], item["msg"]) for item in error.errors(include_url=False)]
+def problems(error: ValidationError) -> str:
+    """Return what is wrong with values that a model refused, the first few, each with its place."""
+    found = [
+        ": ".join(filter(None, (".".join(map(str, item["loc"])), item["msg"])))
+        for item in error.errors(include_url=False)
+    ]
     more = f"; and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
     return "; ".join(found[:_SHOWN]) + more
-
-
-def _problem(place: tuple[int | str, ...], message: str) -> str:
-    where = ".".join(str(step) for step in place)
-    return f"{where}: {message}" if where else message

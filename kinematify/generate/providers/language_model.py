@@ -44,7 +44,6 @@ KEY, MODEL = "KINEMATIFY_LLM_KEY", "KINEMATIFY_LLM_MODEL"
 ANSWER_FILE = "answer.json"
 _KINDS, _PARAMETERS = 20, 14  # shown, and of each
 _NAMED = 16  # digits of the digest that name an exchange
-_FENCED = re.compile(r"```(?:json)?\s*(.*?)```", re.DOTALL)
 _SHOWN = 300  # characters of an answer that is not understood
 _ABOUT = 250  # characters that say what a field means, at most
 _TASK = """You build articulated objects. Answer with one JSON object and nothing else. What the user describes is an
@@ -83,7 +82,8 @@ A blueprint:
 A checklist:
 - One fact for each thing that the user asks for and that can be measured: how many, how large, where, which colour, how
   it moves and how far. All that is said of the same parts is one fact, for one joint serves one fact of motion.
-  There is one at least: a bare name asks for the part that makes the thing work.
+  There is one at least: a bare name asks for the part that makes the thing work. What drives what (a pedal its lid, a
+  screw its jaw, gears each other) is a fact of its own: "coupled to".
 - "parts" are all the parts it is true of, by the names in the blueprint, or nouns such as "drawer" of a request.
   Without "parts" it is of the whole: its size, and the colour or material of most of it. On each side: one fact a side.
 """
@@ -336,10 +336,8 @@ def _values(text: str) -> dict[str, Any]:
     Raises:
         InputError: There is none.
     """
-    fenced = _FENCED.search(text)
-    inner = fenced[1] if fenced else text[text.find("{") : text.rfind("}") + 1] or text
     try:
-        values = json.loads(inner)
+        values = json.loads(text[text.find("{") : text.rfind("}") + 1] or text)
     except (ValueError, RecursionError) as error:
         shown = " ".join(text.split())[:_SHOWN]
         raise InputError(f"The answer is no JSON ({error}). It began: {shown!r}.") from error

@@ -159,6 +159,20 @@ def test_a_fact_of_how_far_may_stand_beside_one_of_how():
     assert "'a flap': lid already serves 'a lid'" in fault
 
 
+def test_what_drives_what_is_measured():
+    """A knob that is fixed to a lid moves with it; a pedal does where its joint follows that of the lid."""
+    values = json.loads(lidded())
+    for name, x in (("knob", 0.0), ("pedal", 0.5)):
+        shape = {"kind": "box", "size": [0.02, 0.02, 0.02], "xyz": [x, 0, 0.3]}
+        values["blueprint"]["parts"].append({"name": name, "shapes": [shape]})
+    fixed, hinge = {"type": "fixed", "parent": "lid", "child": "knob"}, values["blueprint"]["joints"][0]
+    for mimic, holds in (({}, False), ({"mimic": {"leader": "lid", "multiplier": 0.5}}, True)):
+        values["blueprint"]["joints"] = [hinge, fixed, {**hinge, "child": "pedal", **mimic}]
+        for other, right in (("knob", True), ("pedal", holds), ("body", False)):
+            fact = {"phrase": f"with the {other}", "parts": ["lid"], "relation": "coupled to", "to": [other]}
+            assert (built_answer({**values, "checklist": [fact]}).differences == ()) is right, other
+
+
 def test_values_of_joints_are_those_of_the_blueprint():
     """A lid that is shown half a radian open turns into its box half a radian beyond the closed pose."""
     values = json.loads(lidded(axis=1.0))["blueprint"]
