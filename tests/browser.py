@@ -27,8 +27,10 @@ def opened(address: str, *, dark: bool = False, width: int = 1200) -> Iterator[t
             browser = stack.enter_context(open_browser())
         except EnvironmentFault as fault:
             pytest.skip(str(fault))
-        page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme="dark" if dark else "light")
-        page.set_default_timeout(_PATIENCE)
+        size, scheme = {"width": width, "height": 800}, "dark" if dark else "light"
+        context = browser.new_context(viewport=size, color_scheme=scheme)
+        context.set_default_timeout(_PATIENCE)
+        page = context.new_page()
         messages: list[str] = []
         page.on("console", lambda message: messages.append(f"{message.type}: {message.text}"))
         page.on("pageerror", lambda error: messages.append(f"error: {error}"))

@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import trimesh
+
 from tests import household, robots
 from tests.known import KnownJoint, KnownObject, moved, posed, shuffled, with_yaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from pathlib import Path
 
-__all__ = ["BUILDERS", "KnownJoint", "KnownObject", "moved", "posed", "shuffled", "with_yaw"]
+__all__ = ["BUILDERS", "KnownJoint", "KnownObject", "moved", "posed", "shuffled", "with_yaw", "write_parts"]
 
 BUILDERS: Mapping[str, Callable[..., KnownObject]] = {
     builder.__name__: builder
@@ -37,3 +40,11 @@ BUILDERS: Mapping[str, Callable[..., KnownObject]] = {
         robots.torso,
     )
 }
+
+
+def write_parts(name: str, folder: Path, *, scale: float = 1.0) -> Path:
+    """Write the parts of an object as a folder of STL files; `scale` is units per metre."""
+    folder.mkdir()
+    for part in BUILDERS[name]().parts:
+        trimesh.Trimesh(scale * part.vertices, part.faces, process=False).export(folder / f"{part.name}.stl")
+    return folder

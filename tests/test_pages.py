@@ -56,7 +56,7 @@ def report_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return page
 
 
-def test_sliders_move_the_model(report_page: Path) -> None:
+def test_sliders_move_the_model_and_tables_filter_and_sort(report_page: Path) -> None:
     with opened(report_page.as_uri()) as (page, messages):
         page.wait_for_selector(".viewer[data-ready=yes]")
         canvas, slider = page.locator(".viewer canvas"), page.locator("input[data-joint=hinge_1]")
@@ -79,20 +79,6 @@ def test_sliders_move_the_model(report_page: Path) -> None:
         right, up, back = (np.array(axis) for axis in page.evaluate("viewers[0].axes()"))
         assert np.allclose(np.cross(right, up), back), "the picture is not mirrored"
         assert page.evaluate("viewers[0].poses()[2][3]") == pytest.approx(0.4, abs=1e-6)  # latch, by its leader
-        assert messages == []
-
-
-def test_a_finding_is_shown_where_it_was_seen(report_page: Path) -> None:
-    with opened(report_page.as_uri(), dark=True) as (page, messages):
-        page.wait_for_selector(".viewer[data-ready=yes]")
-        page.locator(".finding button[data-show]").first.click()
-        assert page.evaluate("viewers[0].q.hinge_1") == pytest.approx(0.5)
-        assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 22, 26)"
-        assert messages == []
-
-
-def test_report_filters_sorts_and_links(report_page: Path) -> None:
-    with opened(report_page.as_uri()) as (page, messages):
         cards = page.locator(".finding:visible").count()
         page.locator("input[name=severity][value=warning]").uncheck()
         assert 0 < page.locator(".finding:visible").count() < cards
@@ -103,6 +89,15 @@ def test_report_filters_sorts_and_links(report_page: Path) -> None:
         page.emulate_media(media="print")
         assert not page.locator(".filters").is_visible()
         assert not page.locator(".viewer").is_visible()
+
+
+def test_a_finding_is_shown_where_it_was_seen(report_page: Path) -> None:
+    with opened(report_page.as_uri(), dark=True) as (page, messages):
+        page.wait_for_selector(".viewer[data-ready=yes]")
+        page.locator(".finding button[data-show]").first.click()
+        assert page.evaluate("viewers[0].q.hinge_1") == pytest.approx(0.5)
+        assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 22, 26)"
+        assert messages == []
 
 
 AXIS = Problem(id="axis hinge", check="axis", severity="error", text="The axis is off by 40 deg.")

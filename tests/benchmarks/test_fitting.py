@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from benchmarks.fit import network, point_network
 from benchmarks.fit.categories import ALIKE
 from benchmarks.fit.corpora import gather_examples, generated_sources
 from benchmarks.fit.cross_validation import cause_of
@@ -51,8 +52,12 @@ def test_categories_name_recipes_and_families_once_and_no_category_is_of_another
     assert not set(named) & set(ALIKE)
 
 
-def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path) -> None:
+def test_a_small_fit_writes_weights_and_tables_and_the_same_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("lightgbm", reason="the extra `fit` is not installed")
+    for part in (network, point_network):
+        monkeypatch.setitem(part.PARAMETERS, "epochs", 2)
     once, again = tmp_path / "once", tmp_path / "again"
     for out in (once, again):
         report = run_fit(

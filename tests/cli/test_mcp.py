@@ -73,11 +73,10 @@ async def refusal(client: Client, tool: str, **arguments: object) -> str:
     return str(answer.content)
 
 
-def test_an_agent_brings_three_broken_models_to_pass(tmp_path: Path) -> None:
+def test_an_agent_brings_broken_models_to_pass(tmp_path: Path) -> None:
     broken = {
-        "swapped": (door(limits=(1.5, 0.0)), "KV137"),
+        "swapped": (door(limits=(1.5, 0.0), mesh="leaf.stl"), "KV137"),
         "lost": (door(parent="frme"), "KV12"),
-        "lost_mesh": (door(mesh="leaf.stl"), "KV"),
     }
 
     async def repair(client: Client) -> None:
@@ -91,6 +90,7 @@ def test_an_agent_brings_three_broken_models_to_pass(tmp_path: Path) -> None:
                 assert any("frme" in item["message"] for item in before["findings"])
                 file.write_text(text.replace("frme", "frame"))
             else:
+                assert any("leaf.stl" in item["message"] for item in before["findings"])
                 file = tmp_path / f"{name}_fixed.urdf"
                 await call(client, "fix", model=f"{name}.urdf", out=file.name, kinematics=True)
             assert await call(client, "validate", model=file.name, quick=name != "lost") == {

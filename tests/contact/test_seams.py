@@ -14,6 +14,7 @@ from kinematify.contact.seams import find_cuts
 from kinematify.geometry.surface import part_surfaces
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
+from tests.inferred import inferred
 
 CONFIG = load_config()
 X = np.array([1.0, 0.0, 0.0])
@@ -93,7 +94,7 @@ def test_a_door_flush_in_its_body_that_has_a_back_of_its_own_is_no_piece() -> No
 @pytest.mark.parametrize(("name", "kind", "seed"), [("nested_drawer", "cut-2", 0), ("hinge_pin", "cut-3", 1)])
 def test_pieces_come_out_fixed_and_the_other_joints_as_without_the_cut(name: str, kind: str, seed: int) -> None:
     assembly = BUILDERS[name]().assembly
-    whole = infer(assembly, config=CONFIG)
+    whole = inferred(name)
     given = degraded(kind, assembly, CONFIG, seed=seed)
     assert given.pieces
     found = infer(given.assembly, config=CONFIG)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-import trimesh
 
 from benchmarks.studies.invariance import Change, differing
 from kinematify.assembly.load import load_assembly
@@ -14,21 +13,17 @@ from kinematify.generate.procedural.solids import cylinder
 from kinematify.pipeline.heading import principal_heading, rotated
 from kinematify.pipeline.infer_assembly import infer
 from tests.known import known_object, turning
-from tests.objects import BUILDERS
+from tests.objects import BUILDERS, write_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
 def test_what_is_read_from_files_is_the_same_in_any_unit(tmp_path: Path) -> None:
-    assembly = BUILDERS["drawer"]().assembly
-    found = {}
-    for scale in (1.0, 1e-3, 1e3):
-        folder = tmp_path / str(scale)
-        folder.mkdir()
-        for part in assembly.parts:
-            trimesh.Trimesh(scale * part.vertices, part.faces, process=False).export(folder / f"{part.name}.stl")
-        found[scale] = infer(load_assembly(folder))
+    found = {
+        scale: infer(load_assembly(write_parts("drawer", tmp_path / str(scale), scale=scale)))
+        for scale in (1.0, 1e-3, 1e3)
+    }
     assert not differing(found[1.0], found[1e-3], Change(scale=1e-3))
     assert not differing(found[1.0], found[1e3], Change(scale=1.0)), "longer than 20 units: read as millimetres"
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from kinematify.errors import ExitStatus
 from kinematify.processes.start import ONE_THREAD
-from tests.places import ROOT
+from tests.objects import write_parts
 
 _LOOP = """
 import os, sys
@@ -57,9 +57,10 @@ def test_an_error_ends_the_loop() -> None:
 
 def test_the_model_is_the_same_for_any_number_of_jobs(tmp_path: Path) -> None:
     records = []
+    parts = write_parts("nested_drawer", tmp_path / "parts")
     for jobs in ("1", "2"):
         out = tmp_path / jobs
-        command = [sys.executable, "-m", "kinematify", "infer", str(ROOT / "examples" / "cabinet"), "-o", str(out)]
+        command = [sys.executable, "-m", "kinematify", "infer", str(parts), "-o", str(out)]
         options = ["--jobs", jobs, "--no-validation", "--no-preview"]
         ended = subprocess.run([*command, *options], capture_output=True, timeout=300, check=False)
         assert ended.returncode == ExitStatus.FINE, ended.stderr.decode()
@@ -77,5 +78,5 @@ assert run(["infer", sys.argv[1], "-o", sys.argv[2], "--jobs", "1", "--no-previe
 assert worker_context().get_start_method() == "fork", "a server imports again what is there already"
 """
     environment = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
-    words = [sys.executable, "-c", script, str(ROOT / "examples" / "cabinet"), str(tmp_path / "out")]
+    words = [sys.executable, "-c", script, str(write_parts("drawer", tmp_path / "parts")), str(tmp_path / "out")]
     subprocess.run(words, env=environment, check=True, capture_output=True)

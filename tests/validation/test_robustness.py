@@ -37,7 +37,6 @@ def test_every_kind_of_corruption_ends_with_a_report_or_a_refusal(number: int, b
     result = run_case(CorruptionTask(number=number, seed=1, bases=(base,), seconds=20.0, selected=FILE_CHECKS))
     assert result["outcome"] in READY, result["message"]
     assert not result.get("unexplained")
-    assert result["seconds"] < 15.0
 
 
 def test_the_same_number_gives_the_same_model(base: Base, tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ from kinematify.vision.client import ADDRESS, ChatOracle, oracle_of
 from kinematify.vision.piece_question import PieceQuestion, piece_question
 from kinematify.vision.screening import known_questions
 from kinematify.vision.votes import VoterRecord, follow_parts
-from tests.one_mesh import box, write_chest
+from tests.one_mesh import box, write_bin_with_lid, write_chest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -354,6 +354,8 @@ def test_command_line_asks_a_person_or_a_server_and_falls_back_on_geometry(  # n
     assert "named 3 moving parts for 7 tokens: 10 of 10 known parts right" in json.loads(line)["asked"]
     server.scripts = [400]
     monkeypatch.setenv("KINEMATIFY_VLM_MODEL", "refuses")
+    write_bin_with_lid(tmp_path / "bin.ply")
+    words[1] = str(tmp_path / "bin.ply")
     assert run([*words, "--vlm", server.url]) == 3
     assert "refuses the request" in capsys.readouterr().out
     assert (out / "model.urdf").is_file()
