@@ -24,12 +24,18 @@ def silent(what: str, share: float) -> None:
     """No progress."""
 
 
-def test_examples_know_which_hypothesis_is_right_and_are_measured_once(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What was measured of the first mechanisms."""
+    return tmp_path_factory.mktemp("measured")
+
+
+def test_examples_know_which_hypothesis_is_right_and_are_measured_once(measured: Path) -> None:
     sources = generated_sources(0, 2)
-    first = gather_examples(sources, tmp_path, seed=0, workers=1, progress=silent)
-    written = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
-    second = gather_examples(sources, tmp_path, seed=0, workers=1, progress=silent)
-    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == written
+    first = gather_examples(sources, measured, seed=0, workers=1, progress=silent)
+    written = {path: path.stat().st_mtime_ns for path in measured.iterdir()}
+    second = gather_examples(sources, measured, seed=0, workers=1, progress=silent)
+    assert {path: path.stat().st_mtime_ns for path in measured.iterdir()} == written
     for a, b in zip(first, second, strict=True):
         best = int(np.argmax(a.right))
         assert a.types_right[best]
@@ -38,8 +44,8 @@ def test_examples_know_which_hypothesis_is_right_and_are_measured_once(tmp_path:
         np.testing.assert_array_equal(a.right, b.right)
 
 
-def test_what_is_right_has_no_cause_and_what_is_wrong_one(tmp_path: Path) -> None:
-    example = gather_examples(generated_sources(0, 1), tmp_path, seed=0, workers=1, progress=silent)[0]
+def test_what_is_right_has_no_cause_and_what_is_wrong_one(measured: Path) -> None:
+    example = gather_examples(generated_sources(0, 1), measured, seed=0, workers=1, progress=silent)[0]
     assert cause_of(example, int(np.argmax(example.right))) is None
     assert cause_of(example, int(np.argmin(example.types_right))) == "wrong type"
     assert cause_of(replace(example, right=np.zeros_like(example.right)), 0) == "none proposed"
@@ -53,7 +59,7 @@ def test_categories_name_recipes_and_families_once_and_no_category_is_of_another
 
 
 def test_a_small_fit_writes_weights_and_tables_and_the_same_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("lightgbm", reason="the extra `fit` is not installed")
     for part in (network, point_network):
@@ -67,7 +73,7 @@ def test_a_small_fit_writes_weights_and_tables_and_the_same_again(
             composed=4,
             seed=0,
             workers=1,
-            cache=tmp_path / "cache",
+            cache=measured,
             per_category=None,
             hold_out=(),
             skip=(),

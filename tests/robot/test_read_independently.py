@@ -15,7 +15,7 @@ from kinematify.robot.robot import Joint, Robot, forward_kinematics, rest_config
 from kinematify.robot.write import write_robot
 from tests.places import BENCH, ROOT
 
-MODELS = sorted([*BENCH.glob("*/*/model.urdf"), *ROOT.glob("examples/**/*.urdf")])
+MODELS = [*sorted(BENCH.glob("*/*/model.urdf"))[::4], *ROOT.glob("examples/**/*.urdf")]
 
 
 def configurations(robot: Robot, count: int) -> list[dict[str, float]]:
@@ -66,7 +66,7 @@ FOUR_NUMBERS = re.compile(r'<axis xyz="[^"\s]+( [^"\s]+){3,}"')
 
 
 @pytest.mark.skipif(not MODELS, reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
-def test_an_independent_reader_agrees_on_every_model() -> None:
+def test_an_independent_reader_agrees_on_every_fourth_model() -> None:
     stated = [path for path in MODELS if not FOUR_NUMBERS.search(path.read_text("utf-8"))]
     found = {path.parent.name: disagreements(path) for path in stated}
     assert {name: reported for name, reported in found.items() if reported} == {}
