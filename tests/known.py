@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold, Mesh64
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.generate.procedural.blueprint import BlueprintJoint
@@ -19,8 +20,9 @@ from kinematify.robot.transforms import rotation_about
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from manifold3d import Manifold
+    from trimesh import Trimesh
 
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.solids import Point
     from kinematify.robot.arrays import FloatArray
 
@@ -144,6 +146,30 @@ def fixed(parent: str, child: str) -> KnownJoint:
     return KnownJoint(
         parent=parent, child=child, kind=JointType.FIXED, axis=(0, 0, 1), pivot=(0, 0, 0), lower=0.0, upper=0.0
     )
+
+
+def part_of(mesh: Trimesh, name: str = "part") -> Part:
+    """Return a mesh as a part."""
+    return Part(name=name, vertices=mesh.vertices, faces=mesh.faces)
+
+
+def solid_of(part: Part) -> Manifold:
+    """Return a part, or a body of a blueprint, as a solid."""
+    return Manifold(Mesh64(vert_properties=np.array(part.vertices), tri_verts=np.array(part.faces, dtype=np.uint64)))
+
+
+def angle_deg(first: FloatArray, second: FloatArray) -> float:
+    """Angle between two lines through the origin."""
+    return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(first, second)), abs(first @ second))))
+
+
+def carried(blueprint: Blueprint, name: str) -> set[str]:
+    """A part and all that hangs on it."""
+    found = {name}
+    for joint in blueprint.joints:
+        if joint.parent in found:
+            found.add(joint.child)
+    return found
 
 
 def varied(seed: int | None, spread: float = 0.12) -> Callable[[float], float]:

@@ -15,14 +15,19 @@ def box(size: tuple[float, float, float], centre: tuple[float, float, float]) ->
     return trimesh.creation.box(size, trimesh.transformations.translation_matrix(centre))
 
 
-def write_bin_with_lid(path: Path) -> None:
-    """Five boards, a lid on top with a knob, as one mesh."""
+def bin_with_lid() -> tuple[list[trimesh.Trimesh], list[trimesh.Trimesh]]:
+    """Five boards, and a lid on top with a knob."""
     boards = [
         box((0.4, 0.4, 0.02), (0, 0, 0.01)),
         *(box((0.02, 0.4, 0.5), (side * 0.19, 0, 0.27)) for side in (-1, 1)),
         *(box((0.36, 0.02, 0.5), (0, side * 0.19, 0.27)) for side in (-1, 1)),
     ]
-    lid = [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
+    return boards, [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
+
+
+def write_bin_with_lid(path: Path) -> None:
+    """Boards and lid as one mesh."""
+    boards, lid = bin_with_lid()
     trimesh.util.concatenate([*boards, *lid]).export(path)
 
 

@@ -17,6 +17,7 @@ from benchmarks.studies.batch import Killed, killed_run, workers_of
 from kinematify.batch.batch_inputs import find_sources
 from kinematify.cli.app import run
 from tests.batch.assets import kill, manifest_lines, wait_for, write_assets, write_knob
+from tests.one_mesh import bin_with_lid, box
 
 INFER = ("--steps", "infer", "--up", "z")
 
@@ -51,12 +52,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_meshes_that_nobody_segmented_are_grouped_and_one_of_several_objects_is_reported(tmp_path: Path) -> None:
-    def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
-        return trimesh.creation.box(size, trimesh.transformations.translation_matrix(centre))
-
-    boards = [box((0.4, 0.4, 0.02), (0, 0, 0.01)), *(box((0.02, 0.4, 0.5), (x, 0, 0.27)) for x in (-0.19, 0.19))]
-    boards += [box((0.36, 0.02, 0.5), (0, y, 0.27)) for y in (-0.19, 0.19)]
-    lid = [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
+    boards, lid = bin_with_lid()
     one = trimesh.util.concatenate([*boards, *lid])
     (tmp_path / "assets").mkdir()
     one.export(tmp_path / "assets" / "bin.ply")
@@ -131,8 +127,7 @@ def write_boxes(folder: Path, boxes: list[tuple[tuple[float, float, float], tupl
     """A file for each box, given by size and centre."""
     folder.mkdir(parents=True)
     for number, (size, centre) in enumerate(boxes):
-        placed = trimesh.transformations.translation_matrix(centre)
-        trimesh.creation.box(size, placed).export(folder / f"box_{number}.stl")
+        box(size, centre).export(folder / f"box_{number}.stl")
 
 
 def test_a_folder_of_objects_is_told_from_one_of_parts(tmp_path: Path) -> None:

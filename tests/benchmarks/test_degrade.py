@@ -16,6 +16,7 @@ from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.evaluation.accuracy import bench
 from kinematify.evaluation.benchmark_job import CLEAN
+from tests.known import part_of
 from tests.secret_cabinets import request, write_object
 
 CONFIG = load_config()
@@ -23,10 +24,6 @@ CONFIG = load_config()
 
 def mesh_of(part: Part) -> trimesh.Trimesh:
     return trimesh.Trimesh(part.vertices, part.faces, process=False)
-
-
-def part_of(mesh: trimesh.Trimesh, name: str = "part") -> Part:
-    return Part(name=name, vertices=mesh.vertices, faces=mesh.faces)
 
 
 def two_parts() -> Assembly:

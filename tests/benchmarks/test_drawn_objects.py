@@ -4,30 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from manifold3d import Manifold, Mesh64, OpType
+from manifold3d import Manifold, OpType
 
 from benchmarks.fit.drawn import DRAWN, drawn_object
 from kinematify.generate.procedural.builder import CAREFUL
 from kinematify.robot.joint_type import JointType
+from tests.known import carried, solid_of
 
 _MORE = 1e-3
 """Of the smaller body: what two may share more than where they are drawn. Circles are polygons."""
 
 
-def solid_of(part):
-    solid = Manifold(Mesh64(vert_properties=np.array(part.vertices), tri_verts=np.array(part.faces, dtype=np.uint64)))
+def sound_solid(part):
+    solid = solid_of(part)
     assert solid.status().name == "NoError", part.name
     assert solid.volume() > 0.0, part.name
     return solid
-
-
-def carried(blueprint, name):
-    """A part and all that hangs on it."""
-    found = {name}
-    for joint in blueprint.joints:
-        if joint.parent in found:
-            found.add(joint.child)
-    return found
 
 
 def chained(blueprint):
@@ -47,7 +39,7 @@ def blocked(blueprint):
 
     Two parts of a closed chain are no such pair: the chain moves as one, and its joints cannot be moved singly.
     """
-    solids = {part.name: solid_of(part) for part in blueprint.parts}
+    solids = {part.name: sound_solid(part) for part in blueprint.parts}
     chain = chained(blueprint)
     found = set()
     for joint in blueprint.joints:

@@ -15,13 +15,10 @@ from kinematify.geometry.surface import part_surfaces
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 from tests.inferred import inferred
+from tests.known import part_of
 
 CONFIG = load_config()
 X = np.array([1.0, 0.0, 0.0])
-
-
-def part_of(mesh: trimesh.Trimesh, name: str) -> Part:
-    return Part(name=name, vertices=mesh.vertices, faces=mesh.faces)
 
 
 def cuts(*parts: Part) -> set[tuple[int, int]]:

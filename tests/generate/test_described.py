@@ -6,7 +6,6 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from manifold3d import Manifold, Mesh64
 
 from kinematify.config import load_config
 from kinematify.errors import InputError
@@ -14,12 +13,9 @@ from kinematify.generate.described import ObjectDescription
 from kinematify.generate.procedural.blueprint_file import described_blueprint
 from kinematify.generate.registry import FAMILIES, all_kinds, build
 from kinematify.model.masses import inertial_of
+from tests.known import solid_of
 
 DESCRIBED = sorted(set(all_kinds()) - set(FAMILIES))
-
-
-def solid_of(part):
-    return Manifold(Mesh64(vert_properties=np.array(part.vertices), tri_verts=np.array(part.faces, dtype=np.uint64)))
 
 
 def overlaps(blueprint, moving=None):

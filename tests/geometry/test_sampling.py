@@ -9,11 +9,7 @@ import trimesh
 from kinematify.assembly.part import Part
 from kinematify.errors import AssemblyError
 from kinematify.geometry.sampling import sample_surface
-
-
-def part_of(mesh: trimesh.Trimesh) -> Part:
-    return Part(name="part", vertices=mesh.vertices, faces=mesh.faces)
-
+from tests.known import part_of
 
 BOX = part_of(trimesh.creation.box((1.0, 2.0, 4.0)))
 TORUS = part_of(trimesh.creation.torus(1.0, 0.3))

@@ -21,7 +21,7 @@ from kinematify.joints.bearings.refine_lines import (
     refine_line,
 )
 from kinematify.robot.transforms import rotation_about
-from tests.known import known_object, posed, turning
+from tests.known import angle_deg, known_object, posed, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
@@ -63,10 +63,6 @@ def sides_of(name: str) -> tuple[Sides, float]:
 def best(known: KnownObject, joint: KnownJoint, found: dict[tuple[int, int], EdgeBearing]) -> BearingLine:
     a, b = sorted((known.index[joint.parent], known.index[joint.child]))
     return found[a, b].lines[0]
-
-
-def angle_deg(first: np.ndarray, second: np.ndarray) -> float:
-    return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(first, second)), abs(first @ second))))
 
 
 def line_distance(line: BearingLine, joint: KnownJoint) -> float:

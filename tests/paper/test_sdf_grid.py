@@ -15,6 +15,7 @@ from kinematify.paper.sdf_grid import (
     SignedDistanceGrid,
     exact_signed_distance,
 )
+from tests.known import part_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,10 +25,6 @@ if TYPE_CHECKING:
 CONFIG = load_config().sdf.model_copy(
     update={"resolution": 48, "margin": 0.1, "band_cells": 2.0, "cache_bytes": 10_000_000}
 )
-
-
-def part_of(mesh: trimesh.Trimesh) -> Part:
-    return Part(name="part", vertices=mesh.vertices, faces=mesh.faces)
 
 
 def around(part: Part, count: int = 4000, room: float = 0.08) -> FloatArray:

@@ -20,6 +20,7 @@ from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about
 from tests.engines import read_pinocchio
 from tests.inferred import inferred, write_inferred
+from tests.known import angle_deg
 from tests.objects import BUILDERS, KnownObject, posed, shuffled
 
 if TYPE_CHECKING:
@@ -55,11 +56,6 @@ def answers(inference: Inference) -> dict[str, Answer]:
         )
         for joint in inference.joints
     }
-
-
-def angle_deg(first: FloatArray, second: FloatArray) -> float:
-    """Angle between two lines through the origin."""
-    return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(first, second)), abs(first @ second))))
 
 
 def line_distance(axis: FloatArray, pivot: FloatArray, point: FloatArray) -> float:

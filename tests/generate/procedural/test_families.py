@@ -12,6 +12,7 @@ from kinematify.generate.delivery import opened
 from kinematify.generate.procedural.blueprint import Blueprint
 from kinematify.generate.procedural.mesh_styles import STYLES
 from kinematify.generate.registry import FAMILIES, all_kinds, build
+from tests.known import carried
 
 SEEDS = (None, 0)
 
@@ -25,15 +26,6 @@ def manager_of(blueprint: Blueprint) -> CollisionManager:
 
 def collisions(blueprint: Blueprint) -> set[tuple[str, str]]:
     return manager_of(blueprint).in_collision_internal(return_names=True)[1]
-
-
-def carried(blueprint: Blueprint, name: str) -> set[str]:
-    """A part and all that hangs on it."""
-    found = {name}
-    for joint in blueprint.joints:
-        if joint.parent in found:
-            found.add(joint.child)
-    return found
 
 
 CASES = [(name, seed, {}) for name in FAMILIES for seed in SEEDS]
