@@ -77,12 +77,13 @@ def packages(root: Path = ROOT) -> dict[str, Size]:
         if path.suffix not in {".py", ".yaml", ".yml"} or not path.is_file() or "__pycache__" in path.parts:
             continue
         top, *rest = path.relative_to(root).parts
-        name = rest[0] if top == "kinematify" and len(rest) > 1 else top
         if top == "kinematify" and (root / top / rest[0]).is_symlink():
             continue
-        size = measured(path.name, path.read_text("utf-8"))
-        if drawn := DRAWINGS.get((top, *rest)[:3]):
-            name, size = drawn, Size(yaml=path.stat().st_size)
+        if name := DRAWINGS.get((top, *rest)[:3]):
+            size = Size(yaml=path.stat().st_size)
+        else:
+            name = rest[0] if top == "kinematify" and len(rest) > 1 else top
+            size = measured(path.name, path.read_text("utf-8"))
         found.setdefault(name, Size()).add(size)
         if name not in OUTSIDE:
             found["product"].add(size)
