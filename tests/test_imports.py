@@ -25,7 +25,8 @@ def loaded_after(code: str) -> set[str]:
     """Top-level packages that a fresh process holds after running `code`."""
     report = "import sys; print('\\nLOADED', *{name.partition('.')[0] for name in sys.modules})"
     words = [sys.executable, "-c", f"{code}\n{report}"]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
     return set(done.stdout.rsplit("LOADED", 1)[1].split())
 
 
