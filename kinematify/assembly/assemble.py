@@ -15,7 +15,7 @@ from kinematify.assembly.part import Assembly, ExcludedPart, Part
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import MAX_MATERIALS
 from kinematify.robot.densities import density_of
-from kinematify.robot.vectors import referenced
+from kinematify.robot.vectors import lengths_of, referenced
 from kinematify.robot.weld import snapped, weld, welded
 
 if TYPE_CHECKING:
@@ -258,7 +258,7 @@ def _nearest(part: Part, kept: Sequence[Part]) -> str:
 def _box_gap(points: FloatArray, bounds: FloatArray) -> float:
     """Mean distance of points to a box, which is no more than that to the surface inside it."""
     outside = np.maximum(np.maximum(bounds[0] - points, points - bounds[1]), 0.0)
-    return float(np.linalg.norm(outside, axis=1).mean())
+    return float(lengths_of(outside).mean())
 
 
 def _mean_distance(points: FloatArray, part: Part) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.grouping.lattice import Lattice, frame_of, lattice
-from kinematify.robot.vectors import box_gaps
+from kinematify.robot.vectors import box_gaps, lengths_of
 from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def measure_pieces(parts: Sequence[Part]) -> MeasuredPieces:
         parts: Two or more pieces with area, world frame, z up.
     """
     grid = lattice(parts)
-    sizes = np.linalg.norm(grid.bounds[:, 1] - grid.bounds[:, 0], axis=1)
+    sizes = lengths_of(grid.bounds[:, 1] - grid.bounds[:, 0])
     pairs, contact = _contacts(parts, grid, sizes)
     of_piece = _of_pieces(parts, grid)
     of_piece |= _of_neighbours(pairs, contact, sizes, len(parts))

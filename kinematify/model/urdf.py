@@ -12,6 +12,7 @@ from kinematify.model.output import MODEL_FILE
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
+from kinematify.robot.vectors import lengths_of
 from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
@@ -155,7 +156,7 @@ def link_shades(model: KinematicModel) -> dict[str, float]:
         linear = linear_of(colors[name])
         offered = [min(shade, 1.0 / max(float(linear.max()), 1e-3)) for shade in _SHADES]
         shown = srgb_of(np.outer(offered, linear))
-        nearest = np.linalg.norm(shown[:, None] - taken, axis=2).min(axis=1, initial=np.inf)
+        nearest = lengths_of(shown[:, None] - taken).min(axis=1, initial=np.inf)
         best = 0 if nearest[0] > _ALIKE else int(nearest.argmax())
         shades[name] = offered[best]
         taken = np.concatenate([taken, shown[best : best + 1]])
@@ -168,7 +169,7 @@ def distinct_colors(colors: FloatArray) -> bool:
     Args:
         colors: sRGB in [0, 1], shape (n, 3).
     """
-    apart = np.linalg.norm(colors[:, None] - colors, axis=2)
+    apart = lengths_of(colors[:, None] - colors)
     return bool((apart[~np.eye(len(colors), dtype=bool)] > _ALIKE).all())
 
 

@@ -81,7 +81,7 @@ def fit_camera(
     width, height = size
     towards = np.array([np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)])
     center = points.mean(axis=0)
-    radius = max(float(np.linalg.norm(points - center, axis=1).max()), 1e-300)
+    radius = max(float(lengths_of(points - center).max()), 1e-300)
     focal = 0.5 * min(size) / np.tan(0.5 * field_of_view)
     inner = np.array([width - 2.0 * margin, height - 2.0 * margin])
     # Standing this far off, nothing can leave the picture; then the picture is enlarged and shifted to fit.

@@ -11,7 +11,7 @@ from scipy.ndimage import distance_transform_edt, find_objects
 
 from kinematify.geometry.rays import RayScene
 from kinematify.render.camera import fit_camera
-from kinematify.robot.vectors import box_around
+from kinematify.robot.vectors import box_around, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -96,7 +96,7 @@ class _Sheet:
 
     def _cluster(self, tiny: Sequence[int]) -> list[int]:
         """Those near the piece that has most others near it."""
-        apart: BoolArray = np.linalg.norm(self.middles[tiny][:, None] - self.middles[tiny], axis=2) < _CLOSE * self.size
+        apart: BoolArray = lengths_of(self.middles[tiny][:, None] - self.middles[tiny]) < _CLOSE * self.size
         return [tiny[k] for k in np.flatnonzero(apart[apart.sum(axis=1).argmax()]).tolist()]
 
     def _vertices(self, k: int, apart: float = 0.0) -> FloatArray:

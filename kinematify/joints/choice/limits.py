@@ -131,7 +131,8 @@ def _free_turn(scene: JointScene, axis: FloatArray, pivot: FloatArray, obstacles
     """Free angle towards + and -."""
     points = moving_points(scene.cache, scene.child, scene.config.sweep)
     paths = turn_paths(scene.cache, points, axis[None], pivot[None], limit=np.pi, config=scene.config.sweep)
-    return free_ways(scene, obstacles, [paths.against((part,)) for part in obstacles], scene.config.sweep.share)
+    met = paths.reached(obstacles)
+    return free_ways(scene, met, [paths.against((part,)) for part in met], scene.config.sweep.share)
 
 
 def _usual(degrees: float) -> LimitEnd:
@@ -281,6 +282,7 @@ def _slide_range(scene: JointScene, axis: FloatArray) -> Range:
     # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
     obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
     paths = slide_paths(scene.cache, points, axis[None], limit=scene.diagonal, config=scene.config.sweep)
+    obstacles = paths.reached(obstacles)
     swept = [paths.against((part,)) for part in obstacles]
     ways = free_ways(scene, obstacles, swept, scene.config.sweep.share)
     free = np.array([way.motion for way in ways])

@@ -138,19 +138,15 @@ class MeasuredHypotheses:
         theirs = self.parent.points[self.few_parent] - 0.01 * self.unit * self.parent.normals[self.few_parent]
         return {
             "parent": self._entered(own, (scene.parent,), 1.0),
-            "others": self._entered(own, self._near_others(), 1.0),
+            "others": self._entered(own, self.near_others, 1.0),
             "back": self._entered(theirs, (scene.child,), -1.0),
         }
 
-    def _near_others(self) -> tuple[int, ...]:
-        parts = self.scene.cache.assembly.parts
-        low, high = parts[self.scene.child].bounds
-        slack = 0.6 * self.unit
-        return tuple(
-            k
-            for k in self.scene.others
-            if (parts[k].bounds[0] < high + slack).all() and (parts[k].bounds[1] > low - slack).all()
-        )
+    @cached_property
+    def near_others(self) -> tuple[int, ...]:
+        """Parts beside the parent that a motion may meet."""
+        low, high = self.scene.cache.assembly.parts[self.scene.child].bounds
+        return self.scene.cache.near(self.scene.others, low - 0.6 * self.unit, high + 0.6 * self.unit)
 
     def _entered(self, points: FloatArray, parts: Sequence[int], sense: float) -> FloatArray:
         count = len(self.hypotheses)
@@ -683,8 +679,8 @@ def opening(m: MeasuredHypotheses) -> _Found:
     amounts = np.where(m.better == 0, 1.0, -1.0) * m.amounts()[:, _OPEN]
     starts, rays = _outward_rays(m.child.points[m.few], m.child.normals[m.few], 0.01 * m.unit, rng)
     turned = m.moved(starts, amounts), m.moved(starts + rays, amounts)
-    blocked = _blocked(m, (scene.parent, *m._near_others()), *turned, reach)
-    before = _blocked(m, (scene.parent, *m._near_others()), starts[None], (starts + rays)[None], reach)
+    blocked = _blocked(m, (scene.parent, *m.near_others), *turned, reach)
+    before = _blocked(m, (scene.parent, *m.near_others), starts[None], (starts + rays)[None], reach)
     seen_before = 1.0 - float(before.mean())
     result: _Found = {"seen": seen_before, "seen_more": (1.0 - blocked.mean(axis=1)) - seen_before}
     nothing: _Found = {"covers": 0.0, "uncovers": 0.0}
@@ -692,7 +688,7 @@ def opening(m: MeasuredHypotheses) -> _Found:
     if len(covered) == 0:
         return result | nothing
     starts, rays = _outward_rays(m.parent.points[covered], m.parent.normals[covered], 0.01 * m.unit, rng)
-    free = ~_blocked(m, (scene.parent, *m._near_others()), starts[None], (starts + rays)[None], reach)[0]
+    free = ~_blocked(m, (scene.parent, *m.near_others), starts[None], (starts + rays)[None], reach)[0]
     starts, rays = starts[free], rays[free]
     if len(starts) == 0:
         return result | nothing

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import all_three, crossed, lengths_of
+from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -78,6 +78,11 @@ class Paths:
     """As in `Sweep`; m of them are not 0."""
     limit: float
     """As in `Sweep`."""
+
+    def reached(self, obstacles: Sequence[int]) -> tuple[int, ...]:
+        """The first of some parts, and those of the others that lie in the box around the ways."""
+        ends = np.concatenate(self.ends).reshape(-1, 3)
+        return obstacles[0], *self.cache.near(obstacles[1:], lowest(ends), highest(ends))
 
     def against(self, obstacles: Sequence[int]) -> Sweep:
         """First hits of some parts."""

@@ -183,6 +183,11 @@ class PartCache:
             result[left] = self.inside(part, points[left])
         return result
 
+    def near(self, parts: Sequence[int], low: FloatArray, high: FloatArray) -> tuple[int, ...]:
+        """Those of some parts whose boxes meet a box with these corners, world frame [m], shape (3,) each."""
+        boxes = ((part, *self.assembly.parts[part].bounds) for part in parts)
+        return tuple(part for part, lower, upper in boxes if ((lower <= high) & (upper >= low)).all())
+
     def contact(self, parent: int, child: int, band: float) -> ContactView:
         """Contact samples of a pair that lie within `band` [m] beyond its gap."""
         edge = self.graph.by_pair.get(pair(parent, child))
@@ -272,13 +277,15 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
     normals = [samples.normals[index] for samples, index, _, _ in chosen]
     gaps = [cache.distances(to, samples.points[index]) for samples, index, to, _ in chosen]
     labels = [np.full(len(index), label) for _, index, _, label in chosen]
+    reach = _AROUND_OTHERS * unit
     for parts, count, label in ((others, _OTHERS, OTHER), (carried, _CARRIED, CARRIED)):
-        if not parts:
+        near = cache.near(parts, low - reach, high + reach)
+        if not near:
             continue
         # In the order of their distance: that of the parts is whatever a file has.
-        some = sorted(map(cache.samples, parts), key=lambda item: float(lengths_of(item.points.mean(axis=0) - centre)))
+        some = sorted(map(cache.samples, near), key=lambda item: float(lengths_of(item.points.mean(axis=0) - centre)))
         places, faces = (np.concatenate([getattr(item, name) for item in some]) for name in ("points", "normals"))
-        index = _thinned(np.flatnonzero(_within(places, low, high, _AROUND_OTHERS * unit)), count)
+        index = _thinned(np.flatnonzero(_within(places, low, high, reach)), count)
         points.append(places[index])
         normals.append(faces[index])
         gaps.append(cache.distances(child, places[index]))
