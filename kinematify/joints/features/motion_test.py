@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest
+from kinematify.robot.vectors import all_three, crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +82,8 @@ class Paths:
     def reached(self, obstacles: Sequence[int]) -> tuple[int, ...]:
         """The first of some parts, and those of the others that lie in the box around the ways."""
         ends = np.concatenate(self.ends).reshape(-1, 3)
-        return obstacles[0], *self.cache.near(obstacles[1:], lowest(ends), highest(ends))
+        low, high = ends.min(axis=0, initial=np.inf), ends.max(axis=0, initial=-np.inf)
+        return obstacles[0], *self.cache.near(obstacles[1:], low, high)
 
     def against(self, obstacles: Sequence[int]) -> Sweep:
         """First hits of some parts."""
