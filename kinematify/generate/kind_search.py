@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.parameter import pairs
-from kinematify.generate.registry import all_kinds
+from kinematify.generate.registry import all_kinds, kind_named
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -79,7 +79,7 @@ def _names() -> Mapping[str, Kind]:
 
 def kind_called(words: Sequence[str]) -> Kind | None:
     """Return the kind that is called by these words, as `key_of` writes them; None if none is."""
-    return _names().get("".join(words))
+    return kind_named("_".join(words)) or _names().get("".join(words))
 
 
 @cache

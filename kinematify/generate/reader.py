@@ -168,17 +168,12 @@ class Sentence:
         self._assign_roles({})
         first = _match("[^wacsmSNMntDuTB]*", self.roles, 0).end() % len(self.roles)
         limit = _match(_LIMIT, self.roles, first + 1).end()
-        slips = {
-            word: repaired(word, words_of_names())
-            for word, role in zip(words, self.roles, strict=False)
-            if role in "wa"
-        }
-        if not (found := self._named(words, limit)) and (
-            found := self._named([slips.get(w) or w for w in words], limit)
-        ):
-            self.notes += [
-                f"Read {word!r} as {slips[word]!r}." for word in words[found[1] : found[2]] if slips.get(word)
-            ]
+        if not (found := self._named(words, limit)):
+            names = words_of_names()
+            slips = {w: repaired(w, names) for w, role in zip(words, self.roles, strict=False) if role in "wa"}
+            found = self._named([slips.get(w) or w for w in words], limit)
+            read = words[found[1] : found[2]] if found else ()
+            self.notes += [f"Read {word!r} as {slips[word]!r}." for word in read if slips.get(word)]
         if not found:
             head = self._text(first, limit) or self.text
             near = nearest_kinds(head)

@@ -108,11 +108,19 @@ def kind_named(name: str) -> Kind | None:
             from kinematify.generate.described import kind_in  # noqa: PLC0415 - the schema takes a tenth of a second
 
             return kind_in(file)
-        begins = re.compile(rf"^def {re.escape(name)}_?\(", re.MULTILINE)
-        for module in sorted(_FOLDER.glob("[a-z]*.py")):
-            if begins.search(module.read_text(encoding="utf-8")):
-                import_module(f"kinematify.generate.kinds.{module.stem}")
+        for module in _modules().get(name, ()):
+            import_module(f"kinematify.generate.kinds.{module}")
     return KINDS.get(name)
+
+
+@cache
+def _modules() -> Mapping[str, list[str]]:
+    """Function -> the modules of kinds that have one of this name."""
+    found: dict[str, list[str]] = {}
+    for module in sorted(_FOLDER.glob("[a-z]*.py")):
+        for name in re.findall(r"^def (\w+?)_?\(", module.read_text(encoding="utf-8"), re.MULTILINE):
+            found.setdefault(name, []).append(module.stem)
+    return found
 
 
 @cache

@@ -201,10 +201,9 @@ def find_family(name: str) -> Kind:
     Raises:
         InputError: There is none; the message names the nearest.
     """
-    words = re.findall(r"[a-z0-9]+", name.lower())
-    family = kind_named("_".join(words)) or kind_called(key_of(words))
-    if not family:
-        near = " or ".join(item.name for item in nearest_kinds(" ".join(words), 2))
+    whole = "_".join(re.findall(r"[a-z0-9]+", name.lower()))
+    if not (family := kind_named(whole) or kind_called(key_of(name))):
+        near = " or ".join(item.name for item in nearest_kinds(name, 2))
         raise InputError(f"There is no kind {name!r}. Did you mean {near}? kinematify generate --list shows all.")
     return family
 

@@ -381,7 +381,7 @@ class _Path:
         self._rotations, self._translations = sweep.motions(self._values)
         self._arc = 1.0 - np.cos(0.5 * np.diff(self._values).max()) if sweep.turns else 0.0
         self._across = np.concatenate([np.eye(3), sweep.axis[None], -np.eye(3), -sweep.axis[None]])
-        self._track, self._boxes = cache(self._new_track), cache(self._new_boxes)
+        self._track, self._boxes, self._rise = map(cache, (self._new_track, self._new_boxes, self._new_rise))
 
     def near(self, moving: Sequence[_Polytope], resting: Sequence[_Polytope]) -> list[tuple[_Polytope, _Polytope]]:
         """Pairs whose boxes meet in some step, those of the first pieces last."""
@@ -469,7 +469,7 @@ class _Path:
             else np.einsum("nij,vj->nvi", self._rotations, piece.vertices) + self._translations[:, None]
         )
 
-    def _rise(self, piece: _Polytope) -> float:
+    def _new_rise(self, piece: _Polytope) -> float:
         """Return how far the arcs of a piece rise over their chords [m]; by second differences where it is no turn."""
         if self._sweep.followed is None:
             return self._arc * self._sweep.radius(piece.vertices)

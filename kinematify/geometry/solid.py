@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import igl
 import numpy as np
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     import fcl
+    from numpy.typing import NDArray
 
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
@@ -87,7 +88,7 @@ class Solid:
         areas = 0.5 * lengths_of(triangle_normals(vertices[faces]))
         picked, weights = place_samples(vertices[faces], areas, curve_order(vertices[faces], areas), share, 0)
         surface = np.einsum("nk,nkd->nd", weights, vertices[faces[picked]])
-        return np.concatenate([_thinned(corners, share), _along(vertices[edges], share), surface])
+        return np.concatenate([thinned(corners, share), _along(vertices[edges], share), surface])
 
     @cached_property
     def tree(self) -> fcl.BVHModel:
@@ -225,8 +226,8 @@ def _sharp_edges(vertices: FloatArray, faces: IntArray) -> IntArray:
     return np.asarray(ranked[start][(uses != 2) | (cosine < _SHARP)])
 
 
-def _thinned(points: FloatArray, count: int) -> FloatArray:
-    """At most `count` of the points, evenly from their list."""
+def thinned(points: NDArray[Any], count: int) -> NDArray[Any]:
+    """Return at most `count` of the points, evenly from their list."""
     return points[:: max(1, -(-len(points) // max(count, 1)))]
 
 
@@ -281,7 +282,8 @@ def shells_of(vertices: FloatArray, faces: IntArray, *, hole: float) -> Shells:
     triangles, patch = _turned(points, triangles)
     edges = _Edges(triangles, len(points))
     shell = edges.joined(patch)
-    closed = (edges.hole_areas(points, shell) <= hole * _areas(points, triangles, shell))[shell]
+    areas = np.bincount(shell, 0.5 * lengths_of(triangle_normals(points[triangles])))
+    closed = (edges.hole_areas(points, shell) <= hole * areas)[shell]
     return Shells(vertices=points, closed=triangles[closed], sheets=triangles[~closed])
 
 
@@ -377,9 +379,3 @@ class _Edges:
 def _sums(index: IntArray, vectors: FloatArray, count: int) -> FloatArray:
     """Sum vectors (n, 3) by index, shape (count, 3)."""
     return np.stack([np.bincount(index, vectors[:, k], count) for k in range(3)], axis=1)
-
-
-def _areas(points: FloatArray, faces: IntArray, shell: IntArray) -> FloatArray:
-    corners = points[faces]
-    cross = triangle_normals(corners)
-    return np.asarray(np.bincount(shell, 0.5 * lengths_of(cross)))

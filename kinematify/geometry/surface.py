@@ -277,17 +277,11 @@ class PartSurface:
         edges, _, _ = self._edge_table
         pairs, cosines = self.smooth_pairs
         smooth = pairs[cosines > np.cos(self.crease_angle)]
-        left: list[IntArray] = []
-        right: list[IntArray] = []
-        for end in range(2):
-            vertex = edges[smooth[:, 2], end]
-            for side, out in ((0, left), (1, right)):
-                face = smooth[:, side]
-                out.append(face * 3 + np.argmax(faces[face] == vertex[:, None], axis=1))
-        n = faces.size
-        if not left:
-            return np.arange(n)
-        i, j = np.concatenate(left), np.concatenate(right)
+        ends, n = edges[smooth[:, 2]].T[..., None], faces.size
+        i, j = (
+            np.concatenate([face * 3 + np.argmax(faces[face] == end, axis=1) for end in ends])
+            for face in smooth[:, :2].T
+        )
         _, labels = connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(n, n)), directed=False)
         return np.asarray(labels, dtype=np.int64)
 

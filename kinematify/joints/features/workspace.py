@@ -13,6 +13,7 @@ from embreex.rtcore_scene import EmbreeScene
 from kinematify.contact.graph import pair
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
+from kinematify.geometry.solid import thinned
 from kinematify.joints.features.frames import body_axes
 from kinematify.robot.vectors import all_three, crossed, lengths_of
 
@@ -269,8 +270,8 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
     beside = beside if len(beside) >= _NEAREST else np.arange(len(its.points))
     every = np.arange(len(own.points))
     chosen = [
-        (own, np.concatenate([_thinned(every, _CHILD), _nearest(cache, parent, own, every)]), parent, CHILD),
-        (its, np.concatenate([_thinned(beside, _PARENT), _nearest(cache, child, its, beside)]), child, PARENT),
+        (own, np.concatenate([thinned(every, _CHILD), _nearest(cache, parent, own, every)]), parent, CHILD),
+        (its, np.concatenate([thinned(beside, _PARENT), _nearest(cache, child, its, beside)]), child, PARENT),
     ]
     centre = own.points.mean(axis=0)
     points = [samples.points[index] for samples, index, _, _ in chosen]
@@ -285,7 +286,7 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
         # In the order of their distance: that of the parts is whatever a file has.
         some = sorted(map(cache.samples, near), key=lambda item: float(lengths_of(item.points.mean(axis=0) - centre)))
         places, faces = (np.concatenate([getattr(item, name) for item in some]) for name in ("points", "normals"))
-        index = _thinned(np.flatnonzero(_within(places, low, high, reach)), count)
+        index = thinned(np.flatnonzero(_within(places, low, high, reach)), count)
         points.append(places[index])
         normals.append(faces[index])
         gaps.append(cache.distances(child, places[index]))
@@ -309,13 +310,8 @@ def _within(points: FloatArray, low: FloatArray, high: FloatArray, slack: float)
     return np.asarray(((points > low - slack) & (points < high + slack)).all(axis=1))
 
 
-def _thinned(index: IntArray, count: int) -> IntArray:
-    """At most `count` of the positions, spread evenly: samples lie in the order of a space-filling curve."""
-    return index[:: max(1, -(-len(index) // count))]
-
-
 def _nearest(cache: PartCache, part: int, samples: SurfaceSamples, index: IntArray) -> IntArray:
     """Those of the samples at the positions `index` that are nearest to a part."""
-    tried = _thinned(index, _TRIED)
+    tried = thinned(index, _TRIED)
     order = np.argsort(cache.distances(part, samples.points[tried]), kind="stable")
     return tried[order[:_NEAREST]]
