@@ -36,7 +36,7 @@ def convex_hull(points: FloatArray) -> tuple[FloatArray, IntArray]:
     vertices: FloatArray = points[hull.vertices]
     inward = np.einsum("ij,ij->i", triangle_normals(vertices[faces]), hull.equations[:, :3]) < 0
     faces[inward] = faces[inward][:, ::-1]
-    return vertices, faces.astype(np.int64)
+    return vertices, faces
 
 
 def thickened(points: FloatArray, thickness: float) -> FloatArray:

@@ -10,7 +10,7 @@ import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
-from kinematify.robot.vectors import triangle_normals
+from kinematify.robot.vectors import as_one, lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,12 +51,8 @@ class RayScene:
         Args:
             meshes: Vertices (V, 3) in the world frame [m] and faces (F, 3) of each mesh; at least one face in all.
         """
-        counts = [len(vertices) for vertices, _ in meshes]
-        starts = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64)
-        self.vertices: FloatArray = np.concatenate([vertices for vertices, _ in meshes])
-        """All vertices, world frame [m], shape (V, 3)."""
-        self.faces: IntArray = np.concatenate([mesh[1] + start for mesh, start in zip(meshes, starts, strict=True)])
-        """All faces, shape (F, 3)."""
+        self.vertices, self.faces = as_one(meshes)
+        """All vertices, world frame [m], shape (V, 3), and all faces, shape (F, 3)."""
         self.mesh_of_face: IntArray = np.repeat(np.arange(len(meshes)), [len(faces) for _, faces in meshes])
         """Mesh of every face, shape (F,)."""
         used = self.vertices[self.faces.reshape(-1)]
@@ -173,5 +169,4 @@ class RayScene:
 
 
 def _unit(vectors: FloatArray) -> FloatArray:
-    lengths: FloatArray = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(lengths, 1e-300), dtype=np.float64)
+    return np.asarray(vectors / np.maximum(lengths_of(vectors), 1e-300)[..., None], dtype=np.float64)

@@ -237,7 +237,8 @@ def read_scene(
     parts = [
         (index, links, _shapes(model, links, shapes_of) or _shapes(model, links, judged_shapes))
         for index, group in enumerate(rigid_groups(model))
-        for links in _apart(placed_links(model, group), by_link=by_link)
+        for placed in [placed_links(model, group)]
+        for links in ([{name: T} for name, T in placed.items()] if by_link else [placed])
     ]
     solid = [(index, links, shapes) for index, links, shapes in parts if any(len(faces) for _, faces in shapes)]
     corners = [vertices for _, _, shapes in solid for vertices, _ in shapes]
@@ -271,10 +272,6 @@ def placed_links(model: Robot, group: RigidGroup) -> dict[str, FloatArray]:
         joint = model.joint_above[name]
         placed[name] = placed[joint.parent] @ joint.T_parent_child
     return placed
-
-
-def _apart(placed: dict[str, FloatArray], *, by_link: bool) -> list[dict[str, FloatArray]]:
-    return [{name: T} for name, T in placed.items()] if by_link else [placed]
 
 
 def _shapes(

@@ -194,11 +194,8 @@ class Solid:
     @cached_property
     def _rim(self) -> BoolArray:
         """Which sides of a sheet's faces no other one has; side k is opposite corner k; shape (S, 3)."""
-        faces = self.shells.sheets
-        sides = np.concatenate([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]])
-        low, high = np.sort(sides, axis=1).T
-        _, name, uses = np.unique(low * len(self.shells.vertices) + high, return_inverse=True, return_counts=True)
-        return np.asarray((uses[name.reshape(-1)] == 1).reshape(3, -1).T)
+        edges = _Edges(self.shells.sheets, len(self.shells.vertices))
+        return np.asarray(np.roll((edges.uses[edges.name] == 1).reshape(3, -1), -1, axis=0).T)
 
 
 def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:
@@ -344,23 +341,23 @@ class _Edges:
     def __init__(self, faces: IntArray, points: int) -> None:
         self._sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
         low, high = np.sort(self._sides, axis=1).T
-        _, self._first, name, self._uses = np.unique(
+        _, self._first, name, self.uses = np.unique(
             low * points + high, return_index=True, return_inverse=True, return_counts=True
         )
-        self._name = name.reshape(-1)
+        self.name = name.reshape(-1)
 
     def joined(self, patch: IntArray) -> IntArray:
         """Shell of every face: patches that share an edge belong together, as where three walls meet."""
         owner = np.tile(patch, 3)
-        count, edges = int(patch.max()) + 1, len(self._uses)
-        links = coo_array((np.ones(len(owner), dtype=np.int8), (owner, count + self._name)), shape=(count + edges,) * 2)
+        count, edges = int(patch.max()) + 1, len(self.uses)
+        links = coo_array((np.ones(len(owner), dtype=np.int8), (owner, count + self.name)), shape=(count + edges,) * 2)
         _, group = connected_components(links, directed=False)
         return np.asarray(np.unique(group[:count], return_inverse=True)[1].reshape(-1)[patch])
 
     def hole_areas(self, points: FloatArray, shell: IntArray) -> FloatArray:
         """Area that the boundary loops of each shell span [m^2]; an edge of one face only is boundary."""
         count = int(shell.max()) + 1
-        rim = self._first[self._uses == 1]
+        rim = self._first[self.uses == 1]
         if not len(rim):
             return np.zeros(count)
         sides = self._sides[rim]

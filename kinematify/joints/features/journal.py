@@ -131,6 +131,8 @@ def _proposals(
     first = rng.integers(len(facing.areas), size=config.pairs)
     neighbours = tree.query(facing.points[first], k=min(config.neighbours, len(facing.areas)))[1]
     second = np.take_along_axis(neighbours, rng.integers(neighbours.shape[1], size=(config.pairs, 1)), axis=1)[:, 0]
+    once = np.sort(np.unique(first * len(tree.data) + second, return_index=True)[1])
+    first, second = first[once], second[once]
     n1, n2 = facing.normals[first], facing.normals[second]
     cross = crossed(n1, n2)
     sine = lengths_of(cross)
