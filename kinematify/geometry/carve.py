@@ -381,7 +381,7 @@ class _Path:
         self._rotations, self._translations = sweep.motions(self._values)
         self._arc = 1.0 - np.cos(0.5 * np.diff(self._values).max()) if sweep.turns else 0.0
         self._across = np.concatenate([np.eye(3), sweep.axis[None], -np.eye(3), -sweep.axis[None]])
-        self._track, self._boxes, self._rise = map(cache, (self._new_track, self._new_boxes, self._new_rise))
+        self._track, self._boxes, self._rise = cache(self._new_track), cache(self._new_boxes), cache(self._new_rise)
 
     def near(self, moving: Sequence[_Polytope], resting: Sequence[_Polytope]) -> list[tuple[_Polytope, _Polytope]]:
         """Pairs whose boxes meet in some step, those of the first pieces last."""
