@@ -24,13 +24,13 @@ from kinematify.generate.request import listed
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import Part
     from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.parameter import Parameter, Value
-    from kinematify.generate.request import PartRequest, Request, Sizes
+    from kinematify.generate.request import Opening, PartRequest, Request, Sizes
     from kinematify.robot.arrays import FloatArray
 
 _NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
@@ -45,15 +45,16 @@ _ROUND = 0.06  # of a side, by which two sides of what is round differ
 _FILLED = 0.87  # of its box, which the hull of a round part fills at most; a cylinder 0.785
 _TOWARDS = 0.3  # of a way, that leads to a side
 _FRONT = 0.8  # of the width and the height of the whole, that its front has at least
-_DARK = 0.4  # brightness of what is dark at most
 SHOWN = 0.5
 """Share of the surface that has the look of the whole at least."""
+_CLOSES = ("door", "lid", "drawer", "flap")
+_LARGE = 0.1  # of the surface, that what closes an opening has at least to have the look of the whole
 OWN_LOOK = ("rubber", "glass", "mirror")
 """Materials that keep their look where the whole is to have another one."""
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
 _PICKED = pairs("left left|right right|front front|back back|rear back|top top|upper top|bottom bottom|lower bottom")
-_JOINTS = words_of("hinge slide tilt pan spin")
+_JOINTS = words_of("hinge slide tilt pan spin move")
 """Nouns that mean what moves so where no part is called so: what moves most of the object."""
 _ALIKE = pairs(
     "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
@@ -62,7 +63,7 @@ _ALIKE = pairs(
     "display screen|dial knob|"
     "handle lever|lever handle|arm lever|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|"
     "spout neck|rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|"
-    "cymbal top|swing seat|foot base stand|stand base|pedestal base|disc base"
+    "cymbal top|swing seat|barrel drum|drum barrel|foot base stand|stand base|pedestal base|disc base"
 )
 """Noun -> what it may be where no part is called so."""
 _BASE = words_of("body frame housing case casing cabinet")
@@ -185,7 +186,7 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
         made = made.scaled(1.0, mirrored=True)
     missing, unmeasured = list[str](), list[str]()
     for noun, part in request.parts.items():
-        names = names_called(family, made, noun)
+        names = _meant(made, names_called(family, made, noun), part)
         if names:
             made = _adjusted(made, noun, names, part)
         elif part.count != 0 and not _is_detail(family, noun, made):
@@ -388,6 +389,12 @@ def _mirror_helps(family: Kind, made: Blueprint, request: Request) -> bool:
 # ---- parts ---------------------------------------------------------------------------------------------------------
 
 
+def _meant(made: Blueprint, names: list[str], part: PartRequest) -> list[str]:
+    """Return those of some parts that a request counts: two wheels in front are not all wheels."""
+    sided = [name for name in names if part.side and part.count and _is_at(made, [name], part.side)]
+    return sided if sided and part.count != len(names) else names
+
+
 def _adjusted(made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Blueprint:
     """An object with the looks, ranges and opening of some parts as asked for, as far as that can be."""
     if part.color or part.material:
@@ -402,27 +409,26 @@ def _adjusted(made: Blueprint, noun: str, names: Sequence[str], part: PartReques
 
 
 def _painted(made: Blueprint, material: str, color: str) -> tuple[Blueprint, float]:
-    """Give what is most of the surface the look of the whole where too little has it; with the share that has it then.
+    """Give what is most of the surface the look of the whole where too little has it, and what closes a large opening.
 
-    What is of rubber or glass keeps its own.
+    What is of rubber or glass keeps its own. Returns the object, and the share of it that has the look then.
     """
-    for again in (True, True, False):
-        areas: dict[str, float] = {}
-        for part in made.parts:
-            look = part.appearance.materials[0].name if part.appearance else ""
-            if not look.endswith(OWN_LOOK):
-                areas[look] = areas.get(look, 0.0) + part.area
-        others = {name for name in areas if not (name.startswith(color) and name.endswith(material))}
-        share = 1.0 - sum(areas[name] for name in others) / max(sum(areas.values()), 1e-12)
-        if share >= SHOWN or not again:
+    looks = {part.name: part.appearance.materials[0].name if part.appearance else "" for part in made.parts}
+    areas = {part.name: part.area for part in made.parts if not looks[part.name].endswith(OWN_LOOK)}
+    total = max(sum(areas.values()), 1e-12)
+    others = {name for name in areas if not (looks[name].startswith(color) and looks[name].endswith(material))}
+    painted = {name for name in others if stem_of(name).endswith(_CLOSES) and areas[name] > _LARGE * total}
+    for _ in range(2):
+        left: dict[str, float] = {}
+        for name in others - painted:
+            left[looks[name]] = left.get(looks[name], 0.0) + areas[name]
+        if (share := 1.0 - sum(left.values()) / total) >= SHOWN:
             break
-        most = max(others, key=areas.__getitem__)
-        alike = [part.name for part in made.parts if part.appearance and part.appearance.materials[0].name == most]
-        made = looking(made, alike, material, color)
-    return made, share
+        painted |= {name for name in others if looks[name] == max(left, key=left.__getitem__)}
+    return looking(made, painted, material, color), share
 
 
-def looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
+def looking(blueprint: Blueprint, names: Collection[str], material: str, color: str) -> Blueprint:
     """Return an object with parts painted, or of another material; handles on them keep their own look."""
 
     def look(part: Part) -> Part:
@@ -446,8 +452,8 @@ def looking(blueprint: Blueprint, names: Sequence[str], material: str, color: st
     return replace(blueprint, parts=tuple(look(part) if part.name in names else part for part in blueprint.parts))
 
 
-def opened(blueprint: Blueprint, names: Sequence[str], much: float | tuple[float, str]) -> Blueprint:
-    """Return an object with some joints open by a share of their way, or by an angle [rad] or a distance [m].
+def opened(blueprint: Blueprint, names: Sequence[str], much: Opening) -> Blueprint:
+    """Return an object with some joints open by a share of their way, an angle [rad], a distance [m], or raised.
 
     Joints that do not go so far stay as they are; whoever measures the object says so.
     """
@@ -455,18 +461,22 @@ def opened(blueprint: Blueprint, names: Sequence[str], much: float | tuple[float
     for name in names:
         joint = blueprint.joint_above[name]
         lower, upper = _limits(joint)
-        wanted = _opening(joint, much)
+        wanted = _opening(blueprint, joint, much)
         within = min(max(wanted, lower), upper)  # a limit of 1.57 is 90 degrees
         if joint.kind is not JointType.FIXED and math.isfinite(wanted) and _same(within, wanted):
             values[name] = within - joint.value
     return blueprint.moved(values)
 
 
-def _opening(joint: BlueprintJoint, much: float | tuple[float, str]) -> float:
+def _opening(made: Blueprint, joint: BlueprintJoint, much: Opening) -> float:
     """Where a joint stands that is open by so much [rad or m]; nan if that is of the other unit, or no end is there."""
     if isinstance(much, tuple):
         return much[0] if joint.kind.turns is (much[1] == "rad") else math.nan
     low, high = _limits(joint)
+    if isinstance(much, str):
+        middle = next(part.vertices.mean(axis=0) for part in made.parts if part.name == joint.child)
+        levels = [joint.motion(end - joint.value)[2] @ (*middle, 1.0) for end in (low, high) if math.isfinite(end)]
+        return (low, high)[int(np.argmax(levels) if much == "raised" else np.argmin(levels))] if levels else math.nan
     return much * (high if high > 0.0 else low) if much else 0.0
 
 
@@ -504,10 +514,11 @@ def _faults(
             has = sorted({stem_of(item.name).replace("_", " ") for item in made.parts[1:]})
             yield f"{noun}: this {family.title} has none; it has {listed(has[:12])}"
             continue
-        names = names_called(family, made, noun)
+        names = _meant(made, names_called(family, made, noun), part)
         faults = list(part_faults(family, made, noun, names, part))
         is_detail = len(names) < 2 <= (part.count or 0) and not noun.endswith(_APART)
-        if faults and (not names or (is_detail and not count_parameter(family, noun))):
+        counted = count_parameter(family, noun)
+        if (faults or (part.count and not counted)) and (not names or (is_detail and not counted)):
             unmeasured.append(noun)
         yield from (f"{noun}: {why}" for why in faults)
         if part.row and names:
@@ -534,12 +545,14 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
     """
     parameter = count_parameter(family, noun)
     there = len(names)
-    if parameter and (own := int(made.parameters[parameter.name])) and (there < 2 or there % own == 0):
+    own = int(made.parameters[parameter.name]) if parameter and not part.side else 0
+    if own and (there < 2 or there % own == 0):
         there = own  # slots are no parts, and a leg may be two
     alike = {name for other in _ALIKE.get(noun, "").split() for name in names_called(family, made, other)}
     groups = [len({*names, *alike}), *Counter(map(stem_of, names)).values()]
     if part.count not in (None, there) and (part.count not in groups or parameter) and (names or parameter):
-        yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
+        where = f" at the {part.side}" if part.side else ""
+        yield f"{part.count} asked for{where}, there {'is' if there == 1 else 'are'} {there}"
     if part.at_least and names and there < part.at_least and (parameter or noun.endswith(_APART)):
         yield f"several asked for, there is {there}"
     if not names and part.count != 0:
@@ -564,8 +577,8 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
         yield f"does not move {part.towards if part.towards in ('in', 'out') else f'to the {part.towards}'}"
     if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
         yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
-    if part.open is not None and not (leading and all(_stands(joint, part.open) for joint in leading)):
-        wanted = listed(sorted({_shown((_opening(joint, part.open),), joints) for joint in leading}))
+    if part.open is not None and not (leading and all(_stands(made, joint, part.open) for joint in leading)):
+        wanted = listed(sorted({_shown((_opening(made, joint, part.open),), joints) for joint in leading}))
         pose = listed(sorted({_shown((joint.value,), joints) for joint in leading}))
         why = f"open {wanted} was asked for, it is at {pose}; its range is {_ranges(joints)}"
         yield why if _is_clear(noun, names) else "which one is to be open is not said"
@@ -607,20 +620,7 @@ def _has_sides(made: Blueprint, names: Sequence[str], sides: Sequence[float]) ->
     )
 
 
-def _stands_at(made: Blueprint, names: Sequence[str], levels: tuple[float, float]) -> bool:
-    """True if the upper or the lower ends of parts are so high [m] where they are closed and where they are open."""
-    shut = closed(made)
-    ends = [[part.bounds[:, 2] for part in it.parts if part.name in names] for it in (shut, opened(shut, names, 1.0))]
-    return bool(np.isclose(ends, np.reshape(levels, (2, 1, 1)), rtol=_SAME).all(axis=(0, 1)).any())
-
-
-def _has_shade(made: Blueprint, names: Sequence[str], shade: str) -> bool:
-    """True if parts are dark or light, as the eye sees it."""
-    grey = [np.dot(part.color or 0.5, (0.299, 0.587, 0.114)) for part in made.parts if part.name in names]
-    return all(value < _DARK if shade == "dark" else value > _DARK for value in grey)
-
-
-def is_coupled(made: Blueprint, names: Sequence[str], _said: object = None) -> bool:
+def is_coupled(made: Blueprint, names: Sequence[str]) -> bool:
     """Return True if one joint leads some parts, or a loop does; what is fixed moves with what carries it."""
     leaders = set()
     for name in names:
@@ -701,13 +701,9 @@ def _is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
 
 CHECKS: Mapping[str, tuple[Callable[[Blueprint, Sequence[str], Any], bool], str]] = {
     "round": (_are_round, "not round"),
-    "corner": (_is_at, "not at the {}"),
     "each_side": (_on_both_sides, "not as many on either side"),
     "grid": (_stands_in, "columns and rows are not {0[0]} and {0[1]}"),
     "sides": (_has_sides, "no side of it is as long as asked for"),
-    "levels": (_stands_at, "not so high at the ends of its way"),
-    "shade": (_has_shade, "not {}"),
-    "coupled": (is_coupled, "they do not move together"),
 }
 """What is said of parts and is no field of a request -> how it is measured, and what is said where it is otherwise."""
 
@@ -751,8 +747,8 @@ def _goes(joint: BlueprintJoint, wanted: tuple[float, float]) -> bool:
     return all(abs(end - there) < _SAME * way for end, there in zip(wanted, (low, high), strict=True))
 
 
-def _stands(joint: BlueprintJoint, much: float | tuple[float, str]) -> bool:
-    return math.isclose(joint.value, _opening(joint, much), rel_tol=_SAME, abs_tol=1e-9)
+def _stands(made: Blueprint, joint: BlueprintJoint, much: Opening) -> bool:
+    return math.isclose(joint.value, _opening(made, joint, much), rel_tol=_SAME, abs_tol=1e-9)
 
 
 def _ranges(joints: Sequence[BlueprintJoint]) -> str:

@@ -67,7 +67,7 @@ motion move: move moves moving open opens opening close closes closing lift lift
 motion move: come comes travel travels travelling traveling adjust adjusts press presses extend extends extending
 motion move: movable moveable adjustable raisable raising drops rise rises rising falls removable detachable lowers
 motion move: push pushes pulls pull roll rolls lower retract retracts retractable extendable extending drop dropping pop
-motion move: opened_up openable aim aims aimed aiming operate operates operated
+motion move: runs running opened_up openable aim aims aimed aiming operate operates operated
 motion slide: glide glides gliding slide slides sliding telescope telescopes telescopic telescoping
 motion hinge: swing swings swinging pivot pivots pivoting pivoted fold folds folding foldable flip flips flipping turn
 motion hinge: rocks rocking turns turning rotate rotates rotating rotatable tip tips tipping oscillates oscillating
@@ -78,7 +78,9 @@ motion pan: yaws pan pans panning swivel swivels swiveling swivelling
 name: move open press push pull roll drop lower hinge close pop lift
 state 0: closed shut
 state 0.15: ajar
-state 1: open opened pulled pushed propped raised lowered lifted tilted turned swung extended drawn moved folded rotated
+state raised: raised lifted
+state lowered: lowered
+state 1: open opened pulled pushed propped tilted turned swung extended drawn moved folded rotated
 state 1: slid reclined curled bent hinged_open flipped tipped
 degree 0.5: half partly halfway half_way midway
 degree 0.15: slightly
@@ -86,8 +88,6 @@ degree 1: fully wide completely
 stative: starts begins stands_ standing shown starting beginning drawn left currently initially
 where: up down out in back forward forwards outward outwards inward inwards away open upward upwards downward downwards
 where: off through over flat apart backward backwards
-where: together in_unison simultaneously at_once at_the_same_time
-coupled: together in_unison simultaneously synchronously at_once at_the_same_time geared linked coupled
 towards top: up upward upwards
 towards bottom: down downward downwards
 towards out: out outward outwards
@@ -114,6 +114,8 @@ both: either_way to_either_direction both_ways
 aside: behind beside opposite between in_front_of next_to
 beside row: side_by_side in_a_row next_to_each_other
 beside column: in_a_column one_above_the_other on_top_of_each_other
+in: in
+of: of
 lines row: row rows
 lines column: column columns
 det: a an the its their this these those my your our his her any some
@@ -126,7 +128,7 @@ filler: let would wants wanted object item thing model piece side sides hand end
 filler: approximately roughly approx exactly about around whole throughout part parts each_other altogether total s
 filler: already mounted attached fixed connected placed located positioned arranged painted finished coloured colored
 filler: color colour made built there here lines stacked set in_total fitted independently have design looking ones one
-filler: edge overall ornament decoration figure model rest while line done shaped this just only very
+filler: hung edge overall ornament decoration figure model rest while line done shaped this just only very
 plain: really quite rather too
 plain: modern sleek contemporary minimalist vintage retro rustic antique classic elegant fancy cute beautiful nice cool
 plain: robust strong durable sturdy solid professional practical simple plain standard typical normal regular usual
@@ -134,14 +136,15 @@ plain: common new old good great quality ergonomic comfortable realistic detaile
 plain: brushed polished matte matt glossy shiny heavy handy cosy cozy lovely fancy funky tidy cast wrought lacquered
 plain: big large small little narrow short slim compact shallow low tall wide_ style styled freestanding free own extra
 plain: industrial toy pocket handheld tiny mini giant huge home household domestic separate individual
+plain: indoor outdoor american english british french german swiss italian dutch chinese japanese indian european
+plain: mechanical manual manually clockwork self_standing authentic genuine functional working proper real official
 plain: independent traditional identical matching bright construction compound
+plain: curbside roadside
 plain: benchtop tabletop desktop countertop kitchen bathroom bedroom office hospital hotel school workshop nursery lobby
-shade dark: dark deep mahogany teak rosewood ebony wenge
-shade light: light pale pastel
 material walnut: dark_wood dark_wooden dark_timber
 material pine: light_wood light_wooden pale_wood pale_timber
 round: round
-form: round ring ball bar cup loop wire mesh star bow dome barrel t d u l x hook
+form: round t d u l x together in_unison simultaneously synchronously at_once at_the_same_time
 part: door drawer flap knob button lever caster wheel crank rotor vent lock handle lid tray shelf hook gauge needle dial
 part: switch pedal seat leg arm blade window light display screen ladder mirror basket rail bell finger joint cover
 part: hatch panel key roller fan gear pulley spring rope bulb stand foot mast boom bucket propeller wing sail visor
@@ -151,9 +154,9 @@ part: holder rack frame base body pole post chain latch axle bin slot hinge
 """
 """What words mean, and the value of that."""
 ROLES = pairs(
-    "sign ,|having h|and &|dims x|range r|symmetric r|quantity q|number #|relative R|without W|relation L|lines =|"
-    "beside T|both B|endless e|det d|color c|material c|side s|ordinal s|dimension D|refers P|state S|motion m|"
-    "degree g|shade a|stative t|stroke k|limit p|place p|like Y|be b|where v|plain f|part w|use u|form a|filler _"
+    "sign ,|in i|of o|having h|and &|dims x|range r|symmetric r|quantity q|number #|relative R|without W|relation L|"
+    "lines =|beside T|both B|endless e|det d|color c|material c|side s|ordinal s|dimension D|refers P|state S|motion m|"
+    "degree g|stative t|stroke k|limit p|place p|like Y|be b|where v|plain f|part w|use u|form a|filler _"
 )
 """Class of a word -> the letter that stands for it in patterns; the first one counts."""
 OF_SOME = re.compile(
@@ -211,6 +214,7 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bw/ ?", "with "),
     (r"^((?:an? |the |my )?(?:\w+ )?)pair of ", r"\1"),
     ("&", " and "),
+    (r"(?<=[a-z]{2})/(?=[a-z]{2})", " "),
     (r"(?<=\d),(?=\d{3}\b)", ""),
     (r"\bhalf an? (?=(?:met|foot|inch))", "0.5 "),
     (
@@ -222,9 +226,9 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (
         (
             r"^(?:(?:hi|hello|hey),? )?(?:(?:(?:for|in) [^,;:.]*?,? )?(?:i|we|you|they|my|our|us)\b[^,;:.]*?"
-            r"\b(?:(?:look|search|ask)(?:s|ing)? for|wants?|needs?|would like|d like|design(?:ing)?|build(?:ing)?|"
-            r"simulat(?:e|ing)|had one of those|have one of those|after|like) (?=\S)|(?:looking|searching) for "
-            r"|(?:can|could|would|will) (?:you|u|ya) (?:please )?|(?:i|we|my|our) [^,;.:]*: "
+            r"\b(?:(?:look|search|ask)(?:s|ing)? for|wants?|needs?|would like|(?:d |would )?love|d like|design(?:ing)?|"
+            r"build(?:ing)?|simulat(?:e|ing)|had one of those|have one of those|after|like) (?=\S)"
+            r"|(?:looking|searching) for |(?:can|could|would|will) (?:you|u|ya) (?:please )?|(?:i|we|my|our) [^,;.:]*: "
             r"|something like |something (?:\w+ )*?for [^,;:.]*[,:] )"
         ),
         "",
@@ -237,7 +241,21 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
         ),
         "",
     ),
-    (r"\b(?:pale|pastel) (?=(?:red|green|blue|yellow|orange|brown|pink|purple|gr[ea]y)\b)", "light "),
+    (
+        (
+            r"\b(?:pale|pastel|lime|sky|baby|powder|duck egg|mint|ice|sage|apple|lemon) "
+            r"(?=(?:red|green|blue|yellow|orange|brown|pink|purple|gr[ea]y)\b)"
+        ),
+        "light ",
+    ),
+    (r"\b(?:bottle|racing|forest|hunter|midnight|oxblood|cherry|wine) (?=(?:red|green|blue)\b)", "dark "),
+    (
+        (
+            r"\b(?:bright|signal|traffic|pillar box|fire engine|jet|snow|royal) "
+            r"(?=(?:red|green|blue|yellow|orange|black|white)\b)"
+        ),
+        "",
+    ),
     (r"^((?:an? |the )?)built in ", r"\1"),
     (
         rf"((?:rotat|turn|swivel|spin|tilt|swing)\w*(?: (?:up|down|by|to|through))*) ({_NUMBER})(?=$|[,.;]| and )",
@@ -245,7 +263,8 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     ),
     (r"(\d+ ?(?:deg\w*|°)) (?:to |on )?(?:either|each|both) sides?", r"\1 either way"),
     (r"\bof travel\b", "of stroke"),
-    (r"\blight (?=(?:oak|pine|wood|wooden|beech|birch|maple|walnut|ash)\b)", "pale "),
+    (r"\b(?:light|pale) (?=(?:pine|beech|birch|maple|ash)\b)|\bdark (?=(?:walnut|mahogany|teak|ebony)\b)", ""),
+    (r"\blight (?=(?:oak|wood|wooden|walnut)\b)", "pale "),
     (r"(?<!merry )\bgo(?:es|ing)? round(?! (?:the|a|its)\b)", "turn endlessly"),
     (rf"(±|\bat) ?({_NUMBER})(?=$|[,.;]| and )", r"\1 \2 deg"),
     (r"(?:from )?\b(?:flat|horizontal|level|closed|shut|upright|vertical) (?:up )?to (?=\d+ ?(?:deg|°))", "0 to "),

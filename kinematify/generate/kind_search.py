@@ -11,7 +11,7 @@ from kinematify.generate.procedural.parameter import pairs
 from kinematify.generate.registry import all_kinds, kind_named
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.generate.library.kind import Kind
 
@@ -99,26 +99,37 @@ def repaired(word: str, known: frozenset[str]) -> str | None:
     return next((it for it in near if it[0] == word[0] and abs(len(it) - len(word)) < 2), None)
 
 
-def nearest_kinds(text: str, count: int = 5) -> list[Kind]:
+def nearest_kinds(text: str, count: int = 5) -> dict[Kind, str]:
     """Return the kinds that are nearest to what a text names, by its nouns, things that do the same, and parts.
 
     Args:
         text: A name or a sentence; the object is named before its parts.
         count: How many.
+
+    Returns:
+        Kind -> the names of it that are nearest, at most two.
     """
-    words = list(dict.fromkeys(key_of(text)))
-    families = all_kinds().values()
-    return sorted(families, key=lambda family: (-max(_scores(words, family)), len(family.name)))[:count]
+    words, found = list(dict.fromkeys(key_of(text))), []
+    for family in all_kinds().values():
+        names = sorted(family.words, key=lambda name: -_score(words, name))[:2]
+        found.append((-_score(words, names[0]), len(family.name), family, " or ".join(names)))
+    found.sort(key=lambda item: item[:2])
+    return {family: names for _, _, family, names in found[:count]}
 
 
-def _scores(words: Sequence[str], family: Kind) -> Iterator[float]:
-    for name in family.words:
-        *others, head = key_of(name)
-        alike = ((word == head) + 0.6 * _does_the_same(word, head) + 0.4 * (word in others) for word in words)
-        spelt = difflib.SequenceMatcher(None, "".join(words[:1]), head).ratio()
-        yield 0.4 * spelt + sum(much * 0.9**k for k, much in enumerate(alike)) - 0.05 * len(others)
+def nearest_to(name: str, text: str) -> dict[Kind, str]:
+    """Return up to five kinds that are nearest to a name: by its last word, and by those before, or by a text."""
+    head, *others = reversed(key_of(name))
+    return nearest_kinds(" ".join((head, *others)), 3) | nearest_kinds(" ".join(others) or text, 2)
 
 
 @cache
 def _does_the_same(one: str, other: str) -> bool:
     return one != other and any(one in group.split() and other in group.split() for group in _SAME.split("|"))
+
+
+def _score(words: Sequence[str], name: str) -> float:
+    *others, head = key_of(name)
+    alike = ((word == head) + 0.6 * _does_the_same(word, head) + 0.4 * (word in others) for word in words)
+    spelt = difflib.SequenceMatcher(None, "".join(words[:1]), head).ratio()
+    return 0.4 * spelt + sum(much * 0.9**k for k, much in enumerate(alike)) - 0.05 * len(others)

@@ -32,7 +32,7 @@ from kinematify.generate.kind_search import (
     key_of,
     kind_called,
     lemma,
-    nearest_kinds,
+    nearest_to,
     repaired,
     words_of,
     words_of_names,
@@ -56,14 +56,14 @@ _STILL = words_of("shelf compartment top back front bottom side rack frame")
 _NAMED = words_of("tilt pan lift swing")
 """Motions that are nouns behind an article."""
 _THE = ("the", "its", "their")
-_ASKING = words_of("towards aside coupled")
-_LOOKS = words_of("color material round shade")
+_ASKING = words_of("towards aside")
+_LOOKS = words_of("color material round")
 _CONTENT = "qxr#csSmMNHnZwagBLWk=Te"
 """Roles of words that ask for something."""
 _NOUN = (
     r"[dP_]{0,2}(?:[#qxDcsfamSgnNZwHu_o]|(?<=[mM])v|(?<=c)&(?=c))*?"
     r"(?:N(?![vpioqrLwnNZ])|H(?![piodsvqracmfSnZwN])|[nZ](?![wnNZ])|w(?![acfswnNZ])"
-    r"|(?:(?<=[dcm])|(?<=mv))s(?![acfswnNZ#]))"
+    r"|(?:(?<=[dcma])|(?<=mv))s(?![acfswnNZ#]))"
 )
 _PHRASES = {
     "sign": "[,&]",
@@ -78,7 +78,7 @@ _PHRASES = {
     "hinge": "H[pdP_i]*(?P<edge>s)_*",
     "verb": "(?P<words>(?:g(?!b)|[mMNSHtke])(?:[mMNSHgtkevf_dP]|b(?=[mMS])|(?<=v)&(?=v))*|(?=r|q(?:B|o?k|S)))"
     "(?:[piodfvb_]*(?P<far>[qr])(?!D)(?:B|ok|k|(?P<then>[Sv]+))?)?",
-    "attribute": "[cqxs]|a(?=[c,&])",
+    "attribute": "(?<!#)(?:c(?![wnNZamMH])|[qxs])|a(?=[c,&])",
     "each": "P",
     "rest": ".",
 }
@@ -88,10 +88,10 @@ _LIMIT = ".*?(?=[,hWRLbPpiY]|(?<!#)o|(?<!g)S(?=[^,]))"
 """Where the name of the whole ends at the latest."""
 Match = re.Match[str]
 Facts = dict[str, Any]
-"""Of `PartRequest`; besides, `grid` (columns and rows, 0 of what nobody said), `each_side`, `per` (a noun), `round`,
-`corner` (a second side), `sides` (lengths of which nobody said the dimension), `levels` (how high it is at both ends of
-its way), `shade` and `coupled`; and, until a noun is found, `article` and `pick` (the left one)."""
-_INNER = (*CHECKS, "per")
+"""Of `PartRequest`; besides, `grid` (columns and rows, 0 of what nobody said), `each_side`, `round`,
+`sides` (lengths of which nobody said the dimension);
+and, until a noun is found, `article` and `pick` (the left one)."""
+_ENDS = {"top": "raised", "bottom": "lowered"}
 _OPPOSITE = {"left": "right", "right": "left"}
 
 
@@ -141,9 +141,6 @@ class Sentence:
     """Motions and form of the whole, with the units that say it."""
     subject: str = ""
     """Noun of the last part; empty for the whole."""
-    listed: tuple[str, ...] = ()
-    """Nouns of the last list of parts, e.g. boom, stick and bucket."""
-    list_end: int = 0
     several: str = ""
     """The last noun of several, of which *the left one* is one."""
     is_plural: bool = False
@@ -168,23 +165,25 @@ class Sentence:
         self._assign_roles({})
         first = _match("[^wacsmSNMntDuTB]*", self.roles, 0).end() % len(self.roles)
         limit = _match(_LIMIT, self.roles, first + 1).end()
-        if not (found := self._named(words, limit)):
+        of = _match("o[^,hWRLbPpiYqxr]*|", self.roles, limit).end()  # a stack of machines
+        if not (found := self._named(words, limit) or self._named(words, of)):
             names = words_of_names()
             slips = {w: repaired(w, names) for w, role in zip(words, self.roles, strict=False) if role in "wa"}
             found = self._named([slips.get(w) or w for w in words], limit)
             read = words[found[1] : found[2]] if found else ()
             self.notes += [f"Read {word!r} as {slips[word]!r}." for word in read if slips.get(word)]
         if not found:
-            head = self._text(first, limit) or self.text
-            near = nearest_kinds(head)
+            head = re.split(r" (?=[\d±])", self._text(first, of))[0] or self.text
+            near = nearest_to(head, self.text)
             if not nearest:
                 raise InputError(
                     f"No kind of object is called {head!r}. The nearest are "
-                    f"{', '.join(family.words[0] for family in near)}. Say one of these, take the nearest with "
+                    f"{'; '.join(near.values())}. Say one of these, take the nearest with "
                     "--nearest, or ask a language model with --source llm."
                 )
-            self.notes.append(f"There is no kind {head!r}: built is the nearest, a {near[0].title}.")
-            self.instead_of, found = head, (near[0], 0, limit)
+            family = next(iter(near))
+            self.notes.append(f"There is no kind {head!r}: built is the nearest, a {family.title}.")
+            self.instead_of, found = head, (family, 0, limit)
         self.family, self.start, self.stop = found
         self._assign_roles(vocabulary(self.family))
         self._take(range(self.start, self.stop))
@@ -206,8 +205,8 @@ class Sentence:
             role = "n"  # its tilt, the left one
         elif own:
             role = "N" if "motion" in means else "n" if word == lemma(word) else "Z"
-        elif word in ("in", "of"):
-            role = word[0]
+        elif role == "h" and word.endswith("ing") and before in "#dc":
+            role = "_"  # two carrying handles
         elif role == "m" and word.endswith("s") and word[:-1] in WORDS:
             role = "M"
         return role or ("a" if re.search("[^e]ed$|ing$", word) else "w")
@@ -257,6 +256,10 @@ class Sentence:
     def _owner(self) -> str:
         return "" if self.fresh else self.subject
 
+    def _state(self, k: int) -> float | str:
+        state = self._mean(k, "state")
+        return state if state in _ENDS.values() else float(state)
+
     def _sign(self, found: Match) -> int:
         k, end = found.start(), self.roles.index(",", found.end())
         if found[0] == ",":
@@ -302,17 +305,16 @@ class Sentence:
         if (found := re.compile(_NOUN).match(self.roles, k)) is None:
             return None
         end = found.end()
-        for start in range(max(k, end - 4), end):
-            if " ".join(map(lemma, self._text(start, end).split())) in self.words:
-                return start, end
-        return end - 1 - (end - 1 > k and self.roles[end - 2] in "wn"), end
+        known = (it for it in range(max(k, end - 4), end) if " ".join(key_of(self._text(it, end))) in self.words)
+        return next(known, end - 1 - (end - 1 > k and self.roles[end - 2] in "wn")), end
 
     def _part(self, k: int, head: int, end: int, *, is_place: bool = False) -> str:
         """Keep what is said before a noun, of the part that it means; returns what it is called."""
         words = self._text(head, end)
         key = " ".join(key_of(words))
         facts, used, is_choice = self._described(k, end, head)
-        pick, article = facts.pop("pick", ""), facts.pop("article", False) and "count" not in facts
+        is_one_of = head > k and self.roles[head - 1] == "w" and not self._cell(key)  # a jockey wheel
+        pick, article = facts.pop("pick", ""), facts.pop("article", False) and not (is_one_of or "count" in facts)
         if words in ("one", "ones") and self.several:
             key = self.several
             if words == "one":
@@ -325,17 +327,15 @@ class Sentence:
         if self.each and not is_place:
             if times := self.things.get(self.each, {}).get("count"):
                 facts["count"] = facts.get("count", 1) * times
-            elif facts.get("count", 1) == 1:
-                facts["per"] = self.each
+            else:
+                self._take(range(k, end), "!")
         facts |= self.ahead
         self.ahead, is_plural = {}, words != lemma(words)
         noun = f"{pick} {words}" if pick else key
-        if pick and facts.get("count") == 1:
-            del facts["count"]
-        elif "count" not in facts and not (pick or noun in self.things or is_choice or is_place):
+        if "count" not in facts and not (pick or noun in self.things or is_choice or is_place):
             counted = _counted(self.family, noun)
             several = {"at_least" if not counted or counted.default else "count": 2}
-            facts |= several if is_plural else {"count": 1} if article and "per" not in facts else {}
+            facts |= several if is_plural else {"count": 1} if article else {}
         if key in _STILL:
             facts.pop("open", None)
         if facts or not is_choice:
@@ -379,8 +379,9 @@ class Sentence:
                 and number != "1"
                 and self._text(stop) == lemma(self._text(stop))
             ):
-                if self.roles[k + 1] == "n":  # a six drawer dresser
-                    self._add(behind, [k, k + 1], count=int(float(number)))
+                nouns = (behind, behind.removesuffix("ed"), behind.removesuffix("d"))
+                if noun := next((it for it in nouns if "part" in self.words.get(it, ())), ""):
+                    self._add(noun, [k, k + 1], count=int(float(number)))  # a six drawer dresser, two wheeled
                 return 1 + (self.roles[k + 1] in "nwa")  # or a three spoke handle, of which nothing is known
             said = {"count": int(number)} if number.isdigit() else {}
         elif role in "qx":
@@ -391,7 +392,7 @@ class Sentence:
         elif word in ("a", "an"):
             said = {"article": True}
         elif role == "S":
-            said = {"open": float(self._mean(k - 1, "degree") or self._mean(k, "state"))}
+            said = {"open": float(self._mean(k - 1, "degree") or 0.0) or self._state(k)}
             used += [k - 1] if self.roles[k - 1] == "g" else []
         elif looks := _LOOKS & self.units[k].means.keys():
             said = {what: self._mean(k, what) for what in looks}
@@ -407,14 +408,14 @@ class Sentence:
         """Read a value of a parameter of the kind; returns where it ends, or 0."""
         for after in range(end, k, -1):
             words = self._text(k, after)
-            meanings = self.words.get(" ".join(map(lemma, words.split())), {})
+            meanings = self.words.get(" ".join(key_of(words)), {})
             if "choice" not in meanings:
                 continue
             name, value = meanings["choice"]
             behind = lemma(self._text(after)) if after < end else ""
             own = self.words.get(behind, {}).get("part") == "own" or behind in name
-            is_counted = "count" in facts or words != lemma(words)
-            if (behind and not own and head is not None) or (meanings.get("part") and not behind and is_counted):
+            counts = meanings.get("part") and ("count" in facts or words != lemma(words))
+            if not own and head is not None if behind else counts:
                 continue
             if self.ahead.get("count") == 0:
                 value = "no" if value == "yes" else "none"
@@ -445,8 +446,6 @@ class Sentence:
                 own["size"] = {**own.get("size", {}), **value}
             elif own.get(name) == "move":
                 own[name] = value
-            elif name == "side" and own.get(name, value) != value:  # at the top left
-                fits &= own.setdefault("corner", value) == value
             else:
                 fits &= own.setdefault(name, value) in (value, "move") or value == "move"
         self._take(units if fits else (), noun)
@@ -473,8 +472,6 @@ class Sentence:
     def _attribute(self, found: Match) -> int:
         """Read a look, a size or a side that is alone."""
         k, facts, used, owner = found.start(), Facts(), list[int](), self._owner
-        if self.roles[k - 1] == "#":  # and five black
-            return k + 1
         k += self._modifier(k, k, facts, used, is_part=False)
         side = WORDS.get(facts.pop("pick", ""), {}).get("side")
         if side and owner:
@@ -487,27 +484,17 @@ class Sentence:
         numbers = values_of(self._text(k))
         (low, _), (value, si) = numbers[0], numbers[-1]
         low = -value if self._mean(k, "symmetric") or "B" in found[0] else low if self.roles[k] == "r" else 0.0
-        if si == "m" and low > 0.0:
-            facts["levels"], low, value = (low, value), 0.0, value - low
         usual = "slide" if si == "m" else "hinge"
-        owner = owner or usual
+        owner = owner or (how if how in ("pan", "tilt") else usual)
         for other in (self.things.get(owner, {}).get("motion", usual), usual):
             how = other if how == "move" else how
-        if (how in ("slide", "lift")) is (si == "m"):
+        if (how in ("slide", "lift")) is (si == "m") and (si == "rad" or low <= 0.0):  # how high it is, is not read
             self._add(owner, range(*found.span()), range=tuple(sorted((low, value))), motion=how, **facts)
 
     def _hinge(self, found: Match) -> None:
         self._fact(found, hinge=self._mean(found.start("edge"), "side"))
 
-    def _owners(self, k: int, owner: str) -> tuple[str, ...]:
-        """Nouns that a verb is about: all of a list, where it says *each*, or is in the plural behind an *and*."""
-        between, is_shown = self.roles[self.list_end : k], self.roles[k] != "S" or self.is_shown
-        is_joined = re.search("&[^,&]*$", self.roles[: self.list_end]) and not self._text(k).endswith("s")
-        is_about = is_shown and (not between or (between == "R" and not self.is_plural))
-        is_all = is_joined and (is_about or re.fullmatch("[b_]+", between))
-        return self.listed if self.listed[1:] and (is_all or re.fullmatch("[Rb_,]*P[b_]*", between)) else (owner,)
-
-    def _verb(self, found: Match) -> int:  # noqa: PLR0912 - one per form of a verb
+    def _verb(self, found: Match) -> int:
         """Read how something moves, how far, or how it is shown."""
         how, share, stands, far, k = "", None, self.is_shown, found.start("far"), found.start()
         is_whole = self.roles[k] in "rq" or self._text(k).endswith("s") or "P" in found[0]
@@ -517,10 +504,10 @@ class Sentence:
             can = self.roles[before] in "bR" and self._text(before) not in ("is", "are")
             goes = self._text(j) == "open" and (can or (self.is_plural and not stands and far > 0))
             if role == "S" and not goes and (not can or self._mean(j, "state") == "0"):
-                state, stands = float(self._mean(j, "state")), True
+                state, stands = self._state(j), True
                 if share and not state:  # open and closed
                     return found.end()
-                share = state if share is None else share
+                share = state if share in (None, 1.0) else share
             elif role == "g" and not how:
                 share = float(self._mean(j, "degree"))
             elif role in "mMNHS":
@@ -530,20 +517,16 @@ class Sentence:
             stands |= role == "t"
         heads = [side for j in range(k, found.end()) if (side := self._mean(j, "towards"))]
         facts: Facts = {"towards": heads[0]} if heads and (how or share) else {}
-        if any(self._mean(j, "coupled") for j in range(k, found.end())):
-            facts["coupled"] = True
         if not (share is None or owner or how) and (place := re.search("s[^,hR]*$", self.roles[:k])):
             self._take(range(place.start(), found.end()), "!")  # the top half is open
-        else:
-            for noun in self._owners(k, owner):
-                if far > 0 and (stands or found["then"]) and self.roles[far] == "q" and not how:
-                    self._fact(found, noun, open=values_of(self._text(far))[0])
-                elif far > 0:
-                    self._range(found, far, noun, how or "move", **facts)
-                elif how:
-                    self._fact(found, noun, motion=how, **facts)
-                elif stands and share is not None:
-                    self._fact(found, noun, open=share, **facts)
+        elif far > 0 and (stands or found["then"]) and self.roles[far] == "q" and not how:
+            self._fact(found, owner, open=values_of(self._text(far))[0])
+        elif far > 0:
+            self._range(found, far, owner, how or "move", **facts)
+        elif how:
+            self._fact(found, owner, motion=how, **facts)
+        elif stands and share is not None:
+            self._fact(found, owner, open=share, **facts)
         return found.end()
 
     # ---- places ----------------------------------------------------------------------------------------------------
@@ -560,19 +543,16 @@ class Sentence:
     def _noun(self, found: Match) -> None:
         """Read a part, or where something is."""
         in_place = self.roles[found.start()] in "pio"
-        k, subject = found.start() + in_place, self.subject
+        k = found.start() + in_place
         if span := self._span(k):
             last = self._text(span[1] - 1)
             is_place = bool(self._owner) and (
                 self._text(k) in _THE or (last == lemma(last) and self.roles[k] not in "d#")
             )
             noun = self._part(k, *span, is_place=in_place and (is_place or lemma(last) in _WHERE))
-            is_more = noun not in self.listed and re.fullmatch(",*&?", self.roles[self.list_end : k])
-            self.listed, self.list_end = (*(self.listed if is_more else ()), noun), span[1]
             if self._text(k) in ("each", "every"):
                 self.each = noun if self.roles[span[1]] == "h" else ""
-                if in_place and noun != subject in self.things:
-                    self.things[subject].setdefault("per", noun)
+                self._take(range(k, span[1] * in_place), "!")  # a knob on each door
 
     def _place_side(self, found: Match) -> None:
         side = self._mean(found.start("side"), "side")
@@ -600,10 +580,15 @@ class Sentence:
     def _each(self, found: Match) -> None:
         self.fresh = False
         self.each = self.subject if self.roles[found.end()] == "h" else ""
+        if self._text(found.start()) == "each" and self.subject and not self.is_plural:
+            self._take([found.start()], "!")  # a boom and a bucket each move
 
     def _rest(self, found: Match) -> None:
-        """Pass over a word, or read in which direction what was named moves."""
-        if "motion" in self.things.get(self._owner, ()) and (side := self._mean(found.start(), "towards")):
+        """Pass over a word, or read in which direction what was named moves, or that it is shown up or down."""
+        side = self._mean(found.start(), "towards")
+        if side in _ENDS and self.is_shown and self._owner:
+            self._fact(found, open=_ENDS[side])
+        elif side and "motion" in self.things.get(self._owner, ()):
             self._fact(found, towards=side)
 
     # ---- the whole -------------------------------------------------------------------------------------------------
@@ -629,11 +614,13 @@ class Sentence:
         elif what == "open":
             if isinstance(value, tuple):
                 self._add("hinge" if value[1] == "rad" else "slide", units, open=value)
+            elif isinstance(value, str):
+                self._add("move", units, open=value)
             else:
                 self._set("open", value, units)
         elif what == "hinge":
             self._add("door", units, hinge=value)
-        elif what in ("motion", "towards", "round", "shade"):
+        elif what in ("motion", "towards", "round"):
             self.moves.append((what, value, units))
             self._take(units)
 
@@ -699,7 +686,7 @@ class Sentence:
                 continue
             if "row" in facts:
                 facts["row"] = rows.index(facts["row"]) + 1
-            parts[noun] = {name: value for name, value in facts.items() if name not in _INNER}
+            parts[noun] = {name: value for name, value in facts.items() if name not in CHECKS}
         named = key_of(self._text(self.start, self.stop))
         usual = next((said for word, said in self.family.usual.items() if key_of(word) == named), {})
         stated = {*sizes, *(item.name for noun in parts if (item := _counted(self.family, noun)))}
@@ -730,7 +717,9 @@ class Sentence:
                 taken |= dict.fromkeys(units, "!")
         for noun, facts in self.things.items():
             if noun not in lost and (names := names_called(self.family, blueprint, noun)):
-                listed += [f"{noun}: {why}" for why in self._inner_faults(facts, blueprint, names)]
+                for what, (holds, why) in CHECKS.items():
+                    if what in facts and not holds(blueprint, names, facts[what]):
+                        listed.append(f"{noun}: {why.format(facts[what])}")
         large = np.ptp(blueprint.assembly.bounds, axis=0).max()
         for k in range(self.stop + 1) if not self.request.size else ():
             smallest, largest = map(float, (self._mean(k, "extent") or f"0 {large}").split())
@@ -758,21 +747,13 @@ class Sentence:
             if joint.mimic is None
         )
 
-    def _inner_faults(self, facts: Facts, made: Blueprint, names: list[str]) -> Iterator[str]:
-        """What is said of parts, is no field of a request, and is otherwise."""
-        for what, (holds, why) in CHECKS.items():
-            if what in facts and not holds(made, names, facts[what]):
-                yield why.format(facts[what])
-        if (whose := facts.get("per")) and len(names) % max(len(names_called(self.family, made, whose)), 1):
-            yield f"{len(names)} there, not as many for each {whose}"
-
     def _unread(self, taken: Mapping[int, str], lost: set[str], there: set[str]) -> Iterator[str]:
         """Words of content that nothing took, or a noun that is no part; a quotation with the words between them."""
         quoted = [list[int]()]
         for k, role in enumerate(self.roles[: len(self.units)]):
             owner, words = taken.get(k), key_of(self._text(k))
             is_known = {word.removesuffix("ed") for word in words} <= there
-            asks = role in _CONTENT or _ASKING & self.units[k].means.keys() or (k < self.start and _WHERE & {*words})
+            asks = role in _CONTENT or _ASKING & self.units[k].means.keys()
             if owner == "!" or (asks and (owner in lost or (owner is None and not is_known))):
                 quoted[-1].append(k)
             elif asks:

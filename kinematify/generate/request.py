@@ -73,11 +73,14 @@ def _pair(value: Any) -> Any:
 def _opening(value: Any) -> Any:
     words = {"closed": 0.0, "half": 0.5, "half open": 0.5, "open": 1.0}
     number, unit = value, ""
+    if value in ("raised", "lowered"):
+        return value
     if isinstance(value, str):
         number, unit = (words[value], "") if value in words else quantity(value)
     if isinstance(number, dict) or (not unit and isinstance(number, float | int) and not 0.0 <= number <= 1.0):
         raise ValueError(
-            f"{value} is no opening: a plain number is a share of the way, from 0 to 1; write 45 deg, 1.57 rad or 12 cm"
+            f"{value} is no opening: a plain number is a share of the way, from 0 to 1; write 45 deg, 1.57 rad, 12 cm "
+            "or raised"
         )
     return (number, unit) if unit else number
 
@@ -91,6 +94,8 @@ def _name_among(known: Mapping[str, str], what: str) -> BeforeValidator:
     return BeforeValidator(found)
 
 
+Opening = float | tuple[float, Literal["m", "rad"]] | str
+"""Share of the way, a value of the joint, or ``raised`` or ``lowered``: the end of its way where the part is so."""
 Size = Annotated[float, BeforeValidator(_plain), Field(gt=0.0, le=100.0)]
 Sizes = dict[Literal["width", "depth", "height", "length", "diameter", "thickness"], Size]
 Color = Annotated[str | None, _name_among(COLOR_WORDS, "colour")]
@@ -132,9 +137,10 @@ class PartRequest(_Fields):
         None,
         description="Of the joint, signed, from the closed pose: text as -30 to 90 deg, 0 to 30 cm, or two numbers.",
     )
-    open: Annotated[float | tuple[float, Literal["m", "rad"]] | None, BeforeValidator(_opening)] = Field(
+    open: Annotated[Opening | None, BeforeValidator(_opening)] = Field(
         None,
-        description="How far they stand open: text as 45 deg, 12 cm; a plain number is a share of the way, 0 to 1.",
+        description="How far they stand open: text as 45 deg, 12 cm; a plain number is a share of the way, 0 to 1; "
+        "raised or lowered is an end of it.",
     )
 
     @model_validator(mode="before")

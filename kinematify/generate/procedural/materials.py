@@ -158,7 +158,8 @@ COLORS: dict[str, RGB] = _PLAIN | {
 COLOR_WORDS = {name: name for name in COLORS} | pairs(
     "golden gold|gray grey|navy dark blue|mint light green|cream beige|ivory white|crimson dark red|scarlet red|"
     "burgundy dark red|maroon dark red|teal turquoise|cyan turquoise|aqua turquoise|violet purple|lilac light purple|"
-    "charcoal dark grey|anthracite dark grey|olive dark green|tan light brown|khaki beige|rose pink"
+    "charcoal dark grey|anthracite dark grey|olive dark green|tan light brown|khaki beige|rose pink|"
+    "oxblood dark red|lime light green|mustard dark yellow|lavender light purple|magenta purple"
 )
 COLOR_WORDS |= {f"{said} {COLOR_WORDS[said].split()[-1]}": COLOR_WORDS[said] for said in ("navy", "mint", "olive")}
 COLOR_WORDS["cherry red"] = "dark red"
