@@ -216,7 +216,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "groups": example.groups,
                 "alike": example.alike,
                 "is_continuous": example.is_continuous,
-                "sources": example.hypotheses.sources,
+                "sources": example.hypotheses.sources.tolist(),
                 "names": names,
                 "side_names": sorted(example.sides),
             }
@@ -238,7 +238,7 @@ def read_examples(path: Path) -> list[Example]:
                 axes=table[:, 4:7],
                 pivots=table[:, 7:],
                 places=np.full(len(table), ELSEWHERE),
-                sources=tuple(facts.pop("sources")),
+                sources=np.array(facts.pop("sources")),
             )
             measured = dict(zip(facts.pop("names"), stored[f"values_{k}"], strict=True))
             sides = dict(zip(facts.pop("side_names"), stored[f"sides_{k}"], strict=True))

@@ -14,7 +14,9 @@ from kinematify.robot.joint_type import JointType
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from numpy.typing import NDArray
+
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 __all__ = ["JointCandidate", "JointEstimate", "JointType"]
@@ -37,32 +39,30 @@ class Hypotheses:
     """Points on the lines, those of turns nearest to the contact [m], shape (h, 3)."""
     places: IntArray
     """CORNER, HALF_WAY or CENTRE of the child's box, ELSEWHERE for lines of other sources, shape (h,)."""
-    sources: tuple[str, ...]
-    """What proposed each."""
+    sources: NDArray[np.str_]
+    """What proposed each, shape (h,)."""
 
     def __len__(self) -> int:
         return len(self.kinds)
 
     def at(self, index: IntArray) -> Hypotheses:
         """Those at these positions, in this order."""
-        return Hypotheses(
-            kinds=self.kinds[index],
-            axes=self.axes[index],
-            pivots=self.pivots[index],
-            places=self.places[index],
-            sources=tuple(self.sources[k] for k in index),
-        )
+        return Hypotheses(**{name: values[index] for name, values in vars(self).items()})
+
+    @property
+    def given(self) -> BoolArray:
+        """Which were not proposed but given, shape (h,)."""
+        return np.asarray(self.sources == GIVEN)
+
+    def arms(self, point: FloatArray) -> FloatArray:
+        """From each line to a point, across the line [m], shape (h, 3)."""
+        offset = point - self.pivots
+        return np.asarray(offset - np.einsum("hk,hk->h", offset, self.axes)[:, None] * self.axes)
 
 
 def joined(*some: Hypotheses) -> Hypotheses:
     """Hypotheses of one edge one after the other."""
-    return Hypotheses(
-        kinds=np.concatenate([each.kinds for each in some]),
-        axes=np.concatenate([each.axes for each in some]),
-        pivots=np.concatenate([each.pivots for each in some]),
-        places=np.concatenate([each.places for each in some]),
-        sources=tuple(source for each in some for source in each.sources),
-    )
+    return Hypotheses(**{name: np.concatenate([vars(each)[name] for each in some]) for name in vars(some[0])})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

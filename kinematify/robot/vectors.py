@@ -47,12 +47,17 @@ def vertex_normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Unit normals of vertices, means over their faces weighted by area, zero where none has one, shape (V, 3)."""
     sums = np.zeros_like(vertices)
     np.add.at(sums, faces, triangle_normals(vertices[faces])[:, None])
-    return np.asarray(sums / np.maximum(lengths_of(sums), np.finfo(float).tiny)[:, None])
+    return unit(sums, np.finfo(float).tiny)
 
 
 def lengths_of(vectors: FloatArray) -> FloatArray:
     """Lengths as ``np.linalg.norm(vectors, axis=-1)``, (..., 3) -> (...)."""
     return np.sqrt(dots(vectors, vectors))
+
+
+def unit(vectors: FloatArray, least: float = 1.0e-12) -> FloatArray:
+    """Vectors (..., 3) over their lengths; those shorter than `least` over that."""
+    return np.asarray(vectors / np.maximum(lengths_of(vectors), least)[..., None])
 
 
 def lowest(points: FloatArray) -> FloatArray:

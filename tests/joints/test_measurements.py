@@ -28,7 +28,7 @@ def measured(child: Manifold, body: Manifold) -> Values:
         axes=AXES,
         pivots=np.zeros((3, 3)),
         places=np.full(3, ELSEWHERE),
-        sources=("x", "y", "z"),
+        sources=np.array(["x", "y", "z"]),
     )
     return measure(MeasuredHypotheses(scene_of(known, "child"), hypotheses))
 

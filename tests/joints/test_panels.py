@@ -53,11 +53,11 @@ def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) ->
     known = BUILDERS["serial_arm"]()
     scene = scene_of(known, known.joints[1].child)
     assert scene.mechanism == 1.0
-    assert scene.bearing is not None
-    best = scene.bearing.lines[0]
+    assert scene.fitted is not None
+    best = scene.lines[0]
     weak = replace(best, surfaces=(0.0, 0.0))
     lines = tuple(replace(weak, axis=np.asarray(axis), score=score) for axis, score in axes_and_scores)
-    unsure = replace(scene, fitted=replace(scene.bearing, lines=lines))
+    unsure = replace(scene, fitted=replace(scene.fitted, lines=lines))
     assert not unsure.has_bearing
     return ranked_turns(unsure)
 
@@ -70,7 +70,7 @@ def test_axes_of_machines_run_along_their_parts() -> None:
         if source == "weak_bearing"
     }
     assert square == {(0.6, 0.0, 0.8): 0.0, (0.0, 1.0, 0.0): 1.0, (1.0, 0.0, 0.0): 1.0}
-    assert ranked.cues["square"][np.array(ranked.lines.sources) == "box_edge"].max() == 0.0
+    assert ranked.cues["square"][ranked.lines.sources == "box_edge"].max() == 0.0
 
 
 def test_thick_high_doors_side_by_side_are_hinged_at_their_outer_edges() -> None:

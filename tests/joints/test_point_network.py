@@ -37,7 +37,7 @@ def some_hypotheses(seed: int) -> Hypotheses:
     axes[0] = 0.0
     kinds = np.array([FIXED, *[TURN] * 5, *[SLIDE] * 3])
     return Hypotheses(
-        kinds=kinds, axes=axes, pivots=rng.normal(size=(9, 3)), places=np.full(9, ELSEWHERE), sources=("any",) * 9
+        kinds=kinds, axes=axes, pivots=rng.normal(size=(9, 3)), places=np.full(9, ELSEWHERE), sources=np.full(9, "any")
     )
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from kinematify.geometry.surface import distinct_directions
 from kinematify.joints.bearings.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
 from kinematify.joints.bearings.congruent_contacts import shared_by_twins
-from kinematify.joints.bearings.line import NO_LINES, Line, Lines, join, lines_of
+from kinematify.joints.bearings.line import NO_LINES, Line, Lines, join, lines_of, meeting_lines
 from kinematify.joints.bearings.refine_lines import refine_line, refine_lines
 from kinematify.joints.bearings.scores import (
     BearingLine,
@@ -124,8 +124,6 @@ def _fitted(
         turned = _turned_lines(surfaces, pair, centroid, config, draws)
         lines = sorted([*lines, *turned], key=lambda line: -line.score)
     return EdgeBearing(
-        a=edge.a,
-        b=edge.b,
         centroid=read_only(centroid, np.float64),
         lines=tuple(line.exchanged if exchanged else line for line in lines),
         rail=fit_rail(sides, config.rail, draws),
@@ -221,7 +219,7 @@ def _turned_lines(
         support = line_support(side, line, config)
         arm = side.points - line.point
         height = float(np.ptp(arm @ line.axis))
-        width = 2 * float(np.linalg.norm(crossed(arm, line.axis), axis=1).max())
+        width = 2 * float(lengths_of(crossed(arm, line.axis)).max())
         shares = (support, 0.0) if own == pair[0] else (0.0, support)
         if support >= config.turned_support and height <= config.turned_length * width:
             lines.append(
@@ -307,23 +305,12 @@ def _running_along(lines: Lines, directions: FloatArray) -> BoolArray:
 
 
 def normal_pair_lines(side: BearingSide, count: int, rng: np.random.Generator) -> Lines:
-    """Axes of the cylinders through `count` random pairs of samples.
-
-    Each runs along n1 x n2, through the point where the normals meet. Nearly parallel pairs are omitted.
-    """
+    """Axes of the cylinders through `count` random pairs of samples (`meeting_lines`)."""
     if len(side.weights) < 2:
         return NO_LINES
     chance = side.weights / side.weights.sum()
     first, second = rng.choice(len(chance), (2, count), p=chance)
-    n1, n2 = side.normals[first], side.normals[second]
-    cross = crossed(n1, n2)
-    sine = lengths_of(cross)
-    good = sine > _LEAST_SINE
-    axes = cross[good] / sine[good, None]
-    offset = side.points[second][good] - side.points[first][good]
-    # Solve x1 + s n1 = x2 + t n2 in the plane across the axis.
-    along = np.einsum("ij,ij->i", crossed(offset, n2[good]), axes) / sine[good]
-    return Lines(axes=axes, points=side.points[first][good] + along[:, None] * n1[good])
+    return meeting_lines(side.points, side.normals, (first, second), _LEAST_SINE)[0]
 
 
 def directed_lines(side: BearingSide, directions: FloatArray, count: int, rng: np.random.Generator) -> Lines:

@@ -99,6 +99,7 @@ def _roughness(surfaces: Sequence[PartSurface], pair: Pair) -> float:
 class _Twin:
     """Another contact and how lines get there."""
 
+    pair: Pair
     voter: _Voter
     motion: RigidMotion
     swapped: bool
@@ -126,7 +127,7 @@ def _twins_of(
         ]
         if found:
             _, motion, swapped = min(found, key=lambda item: item[0])
-            twins.append(_Twin(voter=voters[other], motion=motion, swapped=swapped))
+            twins.append(_Twin(pair=other, voter=voters[other], motion=motion, swapped=swapped))
     return twins
 
 
@@ -179,7 +180,7 @@ def _voted(voter: _Voter, twins: Sequence[_Twin], diagonal: float, config: Beari
     if not ranked:
         return own
     followed = not own.lines or not same_line(ranked[0], own.lines[0], diagonal, config)
-    follows = tuple((twin.voter.bearing.a, twin.voter.bearing.b) for twin in twins) if followed else ()
+    follows = tuple(twin.pair for twin in twins) if followed else ()
     return replace(own, lines=tuple(ranked), follows=follows)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import dots, lengths_of
+from kinematify.robot.vectors import crossed, dots, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -94,6 +94,31 @@ def lines_of(lines: Sequence[Line]) -> Lines:
         axes=np.array([line.axis for line in lines]).reshape(-1, 3),
         points=np.array([line.point for line in lines]).reshape(-1, 3),
     )
+
+
+def meeting_lines(
+    points: FloatArray, normals: FloatArray, pairs: tuple[IntArray, IntArray], least_sine: float
+) -> tuple[Lines, FloatArray]:
+    """Axes of the cylinders through pairs of points: each runs along n1 x n2, through where the normals meet.
+
+    Args:
+        points: World frame [m], shape (n, 3).
+        normals: Unit normals there, shape (n, 3).
+        pairs: Positions of the first and of the second of each pair, shape (p,) each.
+        least_sine: Pairs whose normals are more nearly parallel are omitted: it leaves the direction open.
+
+    Returns:
+        The lines, and how far along its normal each first point meets its line [m].
+    """
+    n1, n2 = (normals[index] for index in pairs)
+    cross = crossed(n1, n2)
+    sine = lengths_of(cross)
+    good = sine > least_sine
+    axes = cross[good] / sine[good, None]
+    first, second = (points[index[good]] for index in pairs)
+    # Solve x1 + s n1 = x2 + t n2 in the plane across the axis.
+    along = np.einsum("ij,ij->i", crossed(second - first, n2[good]), axes) / sine[good]
+    return Lines(axes=axes, points=first + along[:, None] * n1[good]), along
 
 
 NO_LINES = Lines(axes=np.empty((0, 3)), points=np.empty((0, 3)))

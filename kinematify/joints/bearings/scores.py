@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.joints.bearings.line import Line, Lines, lines_of
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of, unit
 
 if TYPE_CHECKING:
     from kinematify.config import BearingConfig, RailConfig
@@ -169,8 +169,7 @@ def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> Fl
 def across_axes(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two unit vectors across each axis, shapes (L, 3); zero where that is zero."""
     helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
-    first = crossed(axes, helper)
-    first /= np.maximum(lengths_of(first), 1e-12)[:, None]
+    first = unit(crossed(axes, helper))
     return first, crossed(axes, first)
 
 
@@ -251,8 +250,6 @@ class BearingLine:
 class EdgeBearing:
     """Bearing lines of one contact edge, best first, and its rail; empty where nothing is round or extruded."""
 
-    a: int
-    b: int
     centroid: FloatArray
     """Weighted contact centroid, world frame [m], shape (3,). Read-only."""
     lines: tuple[BearingLine, ...]

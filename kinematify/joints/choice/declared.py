@@ -18,7 +18,7 @@ from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_edge, score_line
 from kinematify.joints.bearings.line import Line
-from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
+from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.choice.edges import edge_qualities
 from kinematify.joints.choice.judge import judge as judge_edge
 from kinematify.joints.features.columns import features_of
@@ -188,17 +188,16 @@ class JudgedJoint:
         scene, every = self.scene, self.proposed
         if _is_ball(scene):
             return 0.0
-        shown = [every.axes[~_given(every) & (every.kinds != FIXED)], scene.frame.axes, scene.parent_frame.axes]
-        if scene.bearing is not None:
-            shown += [line.axis[None] for line in scene.bearing.lines]
-            shown += [] if scene.bearing.rail is None else [scene.bearing.rail.axis[None]]
+        shown = [every.axes[~every.given & (every.kinds != FIXED)], scene.frame.axes, scene.parent_frame.axes]
+        shown += [line.axis[None] for line in scene.lines]
+        shown += [] if scene.rail is None else [scene.rail.axis[None]]
         return float(_angles(self.joint.axis, np.concatenate(shown)).min())
 
     @cached_property
     def distance(self) -> float:
         """Distance to the nearest known line of nearly the same direction, fraction of the child's diagonal, or inf."""
         every, near = self.proposed, self._near(self.proposed)
-        away = self._away(every)[near & ~_given(every)]
+        away = self._away(every)[near & ~every.given]
         return float(away.min(initial=np.inf))
 
     def _near(self, every: Hypotheses) -> BoolArray:
@@ -219,7 +218,7 @@ class JudgedJoint:
     def _best(self, kind: int) -> int:
         """Position of the best candidate of a type that the file does not state."""
         every = self.posterior.hypotheses
-        return int(np.argmax(np.where((every.kinds == kind) & ~_given(every), self.posterior.scores, -np.inf)))
+        return int(np.argmax(np.where((every.kinds == kind) & ~every.given, self.posterior.scores, -np.inf)))
 
     @cached_property
     def deficit(self) -> float:
@@ -227,7 +226,7 @@ class JudgedJoint:
         every, scores = self.posterior.hypotheses, self.posterior.scores
         of_type = every.kinds == (SLIDE if self.slides else TURN)
         same = self._near(every) & (self._away(every) < self.settings.same_distance)
-        own = float(scores[of_type & (_given(every) | same)].max())
+        own = float(scores[of_type & (every.given | same)].max())
         return max(0.0, float(scores[self.best]) - own)
 
     @property
@@ -250,7 +249,7 @@ class JudgedJoint:
     def free(self) -> tuple[float, float]:
         """Free motion along the declared joint against the parent, towards + and - [rad or m], at most `reach`."""
         every = self.features.hypotheses
-        row = np.flatnonzero(_given(every) & (every.kinds == (SLIDE if self.slides else TURN)))
+        row = np.flatnonzero(every.given & (every.kinds == (SLIDE if self.slides else TURN)))
         forward, backward = self.features.free_parent[row[0]] * (self.scene.diagonal if self.slides else 1.0)
         return float(forward), float(backward)
 
@@ -300,14 +299,9 @@ def _quality(whole: JudgedAssembly, child: int, body: int) -> float:
     return whole.qualities[pair(child, body)]
 
 
-def _given(every: Hypotheses) -> BoolArray:
-    """Which candidates are the declared joint, shape (h,)."""
-    return np.asarray(np.array(every.sources) == GIVEN)
-
-
 def _is_ball(scene: JointScene) -> bool:
     """The child has no direction at all."""
-    points = scene.cache.samples(scene.child).points
+    points = scene.samples.points
     radii = lengths_of(points - points.mean(axis=0))
     return bool(radii.std() < _BALL * radii.mean())
 

@@ -138,7 +138,7 @@ class Posterior:
                 axis=h.axes[i],
                 pivot=h.pivots[i],
                 score=float(self.scores[i]),
-                source=h.sources[i],
+                source=str(h.sources[i]),
                 evidence={"probability": float(self.posterior[i])},
             )
             for i in kept

@@ -232,7 +232,7 @@ def _can_turn(ratio: float, turn: float, free: FloatArray, config: JointsConfig)
 
 def _square_turns(scene: JointScene, axis: FloatArray) -> tuple[list[float], bool]:
     """Signed angles [rad] by which a panel turns to get square to its body; and whether it is so as it is."""
-    normal = scene.frame.axes[scene.frame.thin]
+    normal = scene.frame.thin_axis
     turns: list[float] = []
     for face in scene.parent_frame.axes:
         across = face - (face @ axis) * axis
@@ -255,15 +255,15 @@ def _touches_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray) -
     """The panel touches its body away from the hinge, as a closed one does on its frame."""
     if len(scene.contact.points) == 0:
         return False
-    reach = np.linalg.norm(crossed(scene.cache.samples(scene.child).points - pivot, axis), axis=1).max()
-    apart = np.linalg.norm(crossed(scene.contact.points - pivot, axis), axis=1)
+    reach = lengths_of(crossed(scene.samples.points - pivot, axis)).max()
+    apart = lengths_of(crossed(scene.contact.points - pivot, axis))
     near = (apart < scene.config.panels.hinge_band * reach) @ scene.contact.weights
     return bool(near < scene.config.panels.ajar_share)
 
 
 def _gap(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: float) -> float:
     """Mean distance of the turned child from its parent [m]."""
-    points = scene.cache.samples(scene.child).points[::10]
+    points = scene.samples.points[::10]
     moved = pivot + (points - pivot) @ rotation_about(axis, turn).T
     return float(scene.cache.distances(scene.parent, moved).mean())
 
@@ -341,15 +341,15 @@ def _standing_out(scene: JointScene, direction: FloatArray) -> float:
     """
     if float(direction @ UP) > 0.9:
         return 0.0
-    own = scene.cache.samples(scene.child).points @ direction
-    body = scene.cache.samples(scene.parent).points @ direction
+    own = scene.samples.points @ direction
+    body = scene.parent_samples.points @ direction
     return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
 
 
 def _press(scene: JointScene, direction: FloatArray, length: float) -> LimitEnd:
     """Travel of a button pressed along a direction that nothing stops: what stands out of its surroundings."""
-    own = scene.cache.samples(scene.child).points
-    body = scene.cache.samples(scene.parent).points
+    own = scene.samples.points
+    body = scene.parent_samples.points
     centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
     wide = 2.0 * float(lengths_of(crossed(own - centre, direction)).max())
     around = body[lengths_of(crossed(body - centre, direction)) < wide]

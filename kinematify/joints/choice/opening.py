@@ -19,7 +19,7 @@ from kinematify.joints.candidate import ELSEWHERE, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.measurements import MeasuredHypotheses, measure
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -55,7 +55,7 @@ def _both_ways(axis: FloatArray, pivot: FloatArray) -> Hypotheses:
         axes=np.array([axis, -axis]),
         pivots=np.array([pivot, pivot]),
         places=np.array([ELSEWHERE, ELSEWHERE]),
-        sources=("forward", "backward"),
+        sources=np.array(["forward", "backward"]),
     )
 
 
@@ -63,7 +63,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
     """Where the first motion of the child and of its handle leads: out, up, or to the face on which the line lies."""
     scene, frame = m.scene, m.scene.frame
     way = _directions(m, scene.centre)
-    normal, thickness = frame.axes[frame.thin], max(float(frame.extents[frame.thin]), 1e-6 * m.unit)
+    normal, thickness = frame.thin_axis, max(float(frame.extents[frame.thin]), 1e-6 * m.unit)
     off = float((m.hypotheses.pivots[0] - scene.centre) @ normal) / thickness
     result = {
         "side_hinge": off * (way @ normal),
@@ -80,8 +80,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
 
 def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
     """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
-    velocity = m.velocity(point[None])[:, 0]
-    return velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None]
+    return unit(m.velocity(point[None])[:, 0], 1e-9 * m.unit)
 
 
 # ---- conventions ---------------------------------------------------------------------------------------------------

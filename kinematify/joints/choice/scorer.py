@@ -189,7 +189,8 @@ def read_scorer(path: Traversable) -> Scorer:
         with path.open("rb") as file, np.load(file) as stored:
             facts = json.loads(str(stored["facts"]))
             arrays = {key: stored[key] for key in _ARRAYS}
-            network, points = _network(stored), _points(stored)
+            layers, points = _stored(stored, NETWORK), _stored(stored, POINTS)
+            network = _network(layers) if layers else None
     except (OSError, ValueError, KeyError) as error:
         raise EnvironmentFault(f"The weights of {_SCORED[name]} ({name}) cannot be read. {remedy}") from error
     if facts.get("format") != FORMAT:
@@ -202,24 +203,21 @@ def read_scorer(path: Traversable) -> Scorer:
         temperature=float(facts["temperature"]),
         provenance=facts["provenance"],
         network=network,
-        points=points,
+        points=PointNetwork(**_single(points)) if points else None,
         **arrays,
     )
 
 
-def _network(stored: Mapping[str, NDArray[Any]]) -> Network | None:
-    """The network of a file of weights, if there is one."""
-    arrays = {key.removeprefix(NETWORK): stored[key] for key in stored if key.startswith(NETWORK)}
-    if not arrays:
-        return None
+def _stored(stored: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
+    """The arrays of one of the networks of a file of weights, none where it has none."""
+    return {key.removeprefix(prefix): stored[key] for key in stored if key.startswith(prefix)}
+
+
+def _network(arrays: dict[str, NDArray[Any]]) -> Network:
     scale = Scale(**{field.name: arrays.pop(field.name) for field in fields(Scale)})
-    layers: dict[str, Any] = {name: layer.astype(np.float32) for name, layer in arrays.items()}
-    return Network(scale=scale, **layers)
+    return Network(scale=scale, **_single(arrays))
 
 
-def _points(stored: Mapping[str, NDArray[Any]]) -> PointNetwork | None:
-    """The network that looks at points of a file of weights, if there is one."""
-    arrays: dict[str, Any] = {
-        key.removeprefix(POINTS): stored[key].astype(np.float32) for key in stored if key.startswith(POINTS)
-    }
-    return PointNetwork(**arrays) if arrays else None
+def _single(layers: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+    """Layers in single precision."""
+    return {name: layer.astype(np.float32) for name, layer in layers.items()}

@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.contact.graph import pair
-from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
+from kinematify.joints.bearings.scores import BearingLine
 from kinematify.joints.features.frames import UP, body_axes, box_frame
 from kinematify.joints.features.journal import held_journal
+from kinematify.robot.vectors import crossed, unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config import FrontCuesConfig, JointsConfig
     from kinematify.contact.tree import KinematicTree
-    from kinematify.joints.bearings.scores import Rail
+    from kinematify.geometry.sampling import SurfaceSamples
+    from kinematify.joints.bearings.scores import EdgeBearing, Rail
     from kinematify.joints.features.frames import BoxFrame
     from kinematify.joints.features.journal import Journal
     from kinematify.joints.features.workspace import ContactView, PartCache
@@ -68,7 +69,7 @@ def front_of(
 def is_level_plate(frame: BoxFrame) -> bool:
     """True if a part is thin upwards, as what is trodden on."""
     sides = np.sort(frame.extents)
-    return bool(abs(float(frame.axes[frame.thin] @ UP)) > np.cos(np.radians(30.0)) and sides[0] < 0.5 * sides[1])
+    return bool(abs(float(frame.thin_axis @ UP)) > np.cos(np.radians(30.0)) and sides[0] < 0.5 * sides[1])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -108,7 +109,7 @@ class TreeScenes:
     def rolls(self, part: int) -> bool:
         """True if a part is a disc standing on the floor on which the whole object stands."""
         assembly, frame = self.cache.assembly, self.frames[part]
-        level = abs(float(frame.axes[frame.thin] @ UP)) < 0.1
+        level = abs(float(frame.thin_axis @ UP)) < 0.1
         lowest = assembly.parts[part].bounds[0, 2] - assembly.bounds[0, 2]
         return bool(level and lowest < 0.01 * self.cache.diagonal and self.disc(part) > 0.5)
 
@@ -156,6 +157,16 @@ class JointScene:
         return self.whole.frames[self.parent]
 
     @property
+    def samples(self) -> SurfaceSamples:
+        """Surface samples of the child."""
+        return self.cache.samples(self.child)
+
+    @property
+    def parent_samples(self) -> SurfaceSamples:
+        """Surface samples of the parent."""
+        return self.cache.samples(self.parent)
+
+    @property
     def diagonal(self) -> float:
         """Diagonal of the assembly [m]."""
         return self.cache.diagonal
@@ -200,7 +211,7 @@ class JointScene:
     @cached_property
     def handle(self) -> Handle | None:
         """Bump beyond the slab (on the outer side if that is known), else the parts that hang on the child."""
-        points, frame = self.cache.samples(self.child).points, self.frame
+        points, frame = self.samples.points, self.frame
         height, k = frame.local(points)[:, frame.thin], frame.thin
         margin = 0.02 * float(np.max(frame.extents))
         above, below = height > frame.slab_upper[k] + margin, height < frame.slab_lower[k] - margin
@@ -239,7 +250,7 @@ class JointScene:
 
     @property
     def _thin_up(self) -> float:
-        return abs(float(self.frame.axes[self.frame.thin] @ UP))
+        return abs(float(self.frame.thin_axis @ UP))
 
     @property
     def upright(self) -> bool:
@@ -252,9 +263,18 @@ class JointScene:
         return self._thin_up > self.config.flat_cosine
 
     @cached_property
-    def bearing(self) -> EdgeBearing | None:
-        """Bearing of the contact; its first line is the journal where there is one."""
-        return self.fitted if self.journal is None else _with_journal(self.fitted, self, self.journal)
+    def lines(self) -> tuple[BearingLine, ...]:
+        """Bearing lines of the contact, best first; the journal stands before them where there is one."""
+        lines, journal = () if self.fitted is None else self.fitted.lines, self.journal
+        if journal is None:
+            return lines
+        score, both = max((line.score for line in lines), default=0.0), (journal.coverage, journal.coverage)
+        return (
+            BearingLine(
+                axis=journal.axis, pivot=journal.pivot, score=score + journal.coverage, surfaces=both, rings=both
+            ),
+            *lines,
+        )
 
     @cached_property
     def journal(self) -> Journal | None:
@@ -270,27 +290,28 @@ class JointScene:
     @cached_property
     def has_bearing(self) -> bool:
         """The best line of the bearing passes the gate."""
-        return self.journal is not None or (
-            self.bearing is not None and passes_gate(self.bearing, self.contact, self.config)
-        )
+        return self.journal is not None or passes_gate(self.lines, self.contact, self.config)
 
     @property
     def rail(self) -> Rail | None:
         """Direction along which the contact is extruded."""
-        return None if self.bearing is None else self.bearing.rail
+        return None if self.fitted is None else self.fitted.rail
+
+    @property
+    def _best_score(self) -> float:
+        """Score of the best bearing line; 0 without one."""
+        return self.lines[0].score if self.lines else 0.0
 
     @cached_property
     def rail_lead(self) -> float:
         """Score of the contact's rail over that of its best line; 0 without a rail."""
-        if self.bearing is None or self.rail is None:
-            return 0.0
-        return self.rail.score / max(self.bearing.best_score, 1e-3)
+        return 0.0 if self.rail is None else self.rail.score / max(self._best_score, 1e-3)
 
     @cached_property
     def prismatic_score(self) -> float:
         """1 where both sides of the contact are extruded far more clearly than they are round, as on a linear guide."""
         rails = self.config.rails
-        if self.rail is None or self.rail_lead == 0.0:
+        if self.rail is None:
             return 0.0
         strong = np.interp(self.rail.score, (rails.score_none, rails.score_full), (0.0, 1.0))
         return float(strong * np.interp(self.rail_lead, (rails.lead_none, rails.lead_full), (0.0, 1.0)))
@@ -299,9 +320,7 @@ class JointScene:
     def _is_round(self) -> bool:
         """The contact is about as round as it is extruded, or more; where it is neither, that says nothing."""
         rails = self.config.rails
-        if self.bearing is None or self.bearing.best_score < rails.rounded_least:
-            return False
-        return 0.0 < self.rail_lead < rails.rounded_lead
+        return self._best_score >= rails.rounded_least and 0.0 < self.rail_lead < rails.rounded_lead
 
     @cached_property
     def compact(self) -> float:
@@ -349,7 +368,7 @@ class JointScene:
     @cached_property
     def inside(self) -> float:
         """Share of the child's surface that lies inside the parent's box."""
-        local, (low, high) = self.frame.local(self.cache.samples(self.child).points), self.body_box
+        local, (low, high) = self.frame.local(self.samples.points), self.body_box
         margin = 0.01 * np.max(high - low)
         return float(np.all((local > low + margin) & (local < high - margin), axis=1).mean())
 
@@ -403,8 +422,8 @@ class JointScene:
         apart_line = twin.centre - self.centre
         distance = float(np.linalg.norm(apart_line))
         apart_line = apart_line / max(distance, 1e-12)
-        closing = abs(float(apart_line @ self.frame.axes[self.frame.thin]))
-        parallel = abs(float(apart_line @ twin.axes[twin.thin]))
+        closing = abs(float(apart_line @ self.frame.thin_axis))
+        parallel = abs(float(apart_line @ twin.thin_axis))
         facing = min(closing, parallel) > np.cos(np.radians(3.0)) and not self.plate and self.smallness < 1.0
         # Buttons of a door are no fingers.
         chain_end = (self.whole.tree.depths[self.child] >= 2 and self.smallness < 1.0) or facing
@@ -419,34 +438,14 @@ class JointScene:
         return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
 
 
-def _with_journal(bearing: EdgeBearing | None, scene: JointScene, journal: Journal) -> EdgeBearing:
-    """The bearing of a contact with the journal as its first line."""
-    lines = () if bearing is None else bearing.lines
-    first = BearingLine(
-        axis=journal.axis,
-        pivot=journal.pivot,
-        score=max((line.score for line in lines), default=0.0) + journal.coverage,
-        surfaces=(journal.coverage, journal.coverage),
-        rings=(journal.coverage, journal.coverage),
-    )
-    a, b = pair(scene.parent, scene.child)
-    return EdgeBearing(
-        a=a,
-        b=b,
-        centroid=journal.pivot if bearing is None else bearing.centroid,
-        lines=(first, *lines),
-        rail=None if bearing is None else bearing.rail,
-    )
-
-
-def passes_gate(bearing: EdgeBearing, contact: ContactView, config: JointsConfig) -> bool:
-    """True where the best line is a bearing beyond doubt.
+def passes_gate(lines: Sequence[BearingLine], contact: ContactView, config: JointsConfig) -> bool:
+    """True where the best of bearing lines, the first, is one beyond doubt.
 
     Either round surface and circles on both parts, or so much round surface on both parts that it needs no circles.
     """
-    if not bearing.lines:
+    if not lines:
         return False
-    line = bearing.lines[0]
+    line = lines[0]
     if line.surface * line.circles > config.gate.product:
         return True
     child = located_support(contact.points, contact.normals, contact.weights, line)
@@ -464,8 +463,7 @@ def located_support(points: FloatArray, normals: FloatArray, weights: FloatArray
         return 0.0
     offset = points - line.pivot
     radial = offset - (offset @ line.axis)[:, None] * line.axis
-    radial /= np.maximum(np.linalg.norm(radial, axis=1), 1e-12)[:, None]
-    miss = np.einsum("ij,ij->i", np.cross(line.axis, radial), normals)
+    miss = np.einsum("ij,ij->i", crossed(line.axis, unit(radial)), normals)
     fit = weights * np.exp(-((miss / np.sin(np.radians(3.0))) ** 2))
     across = normals - (normals @ line.axis)[:, None] * line.axis
     return float(2.0 * np.linalg.eigvalsh((across * fit[:, None]).T @ across)[1] / max(float(weights.sum()), 1e-300))

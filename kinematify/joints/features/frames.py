@@ -51,6 +51,11 @@ class BoxFrame:
         return int(np.argmin(self.extents))
 
     @property
+    def thin_axis(self) -> FloatArray:
+        """Unit direction of the shortest side of the slab in the world frame, shape (3,)."""
+        return np.asarray(self.axes[self.thin])
+
+    @property
     def diagonal(self) -> float:
         """Diagonal of the whole box [m]."""
         return float(np.linalg.norm(self.upper - self.lower))

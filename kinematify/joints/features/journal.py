@@ -7,18 +7,20 @@ other have as well: a seat on its bowl, a porthole on its mouth. A journal asks 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from kinematify.contact.graph import pair
+from kinematify.joints.bearings.line import meeting_lines
 from kinematify.joints.bearings.refine_lines import line_frames
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of, triangle_normals, unit
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig, JournalConfig
+    from kinematify.joints.bearings.line import Lines
     from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
 
@@ -88,7 +90,7 @@ def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config
     lower, upper = cache.assembly.parts[parent].bounds
     near = np.flatnonzero(((centroids > lower - reach) & (centroids < upper + reach)).all(axis=1))
     near = near[:: max(1, -(-len(near) // config.faces))]
-    area_normals = 0.5 * crossed(corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0])
+    area_normals = 0.5 * triangle_normals(corners[near])
     areas = lengths_of(area_normals)
     near, area_normals, areas = near[areas > 0], area_normals[areas > 0], areas[areas > 0]
     points, normals = centroids[near], area_normals / areas[:, None]
@@ -109,10 +111,11 @@ def find_journal(facing: Facing, size: float, config: JournalConfig) -> Journal 
     """
     if len(facing.areas) < _LEAST:
         return None
-    axes, pivots, radii = _proposals(facing, config, np.random.default_rng(0))
+    lines, along = _proposals(facing, config, np.random.default_rng(0))
+    radii = np.abs(along)
     keep = radii < config.largest * size
     best: Journal | None = None
-    for frame, pivot, radius in zip(line_frames(axes[keep]), pivots[keep], radii[keep], strict=True):
+    for frame, pivot, radius in zip(line_frames(lines.axes[keep]), lines.points[keep], radii[keep], strict=True):
         found = _journal(facing, frame, pivot, radius, config)
         if found is not None and (best is None or _merit(found) > _merit(best)):
             best = found
@@ -123,24 +126,15 @@ def _merit(journal: Journal) -> float:
     return journal.coverage * journal.span
 
 
-def _proposals(
-    facing: Facing, config: JournalConfig, rng: np.random.Generator
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Lines where the normals of neighbouring faces meet: axes (k, 3), points (k, 3), radii (k,)."""
+def _proposals(facing: Facing, config: JournalConfig, rng: np.random.Generator) -> tuple[Lines, FloatArray]:
+    """Lines where normals of neighbouring faces meet, and how far the first ones lie from them (`meeting_lines`)."""
     tree = cKDTree(facing.points)
     first = rng.integers(len(facing.areas), size=config.pairs)
     neighbours = tree.query(facing.points[first], k=min(config.neighbours, len(facing.areas)))[1]
     second = np.take_along_axis(neighbours, rng.integers(neighbours.shape[1], size=(config.pairs, 1)), axis=1)[:, 0]
     once = np.sort(np.unique(first * len(tree.data) + second, return_index=True)[1])
     first, second = first[once], second[once]
-    n1, n2 = facing.normals[first], facing.normals[second]
-    cross = crossed(n1, n2)
-    sine = lengths_of(cross)
-    good = sine > config.least_sine
-    axes = cross[good] / sine[good, None]
-    offset = facing.points[second][good] - facing.points[first][good]
-    along = np.einsum("ij,ij->i", crossed(offset, n2[good]), axes) / sine[good]
-    return axes, facing.points[first][good] + along[:, None] * n1[good], np.abs(along)
+    return meeting_lines(facing.points, facing.normals, (first, second), config.least_sine)
 
 
 def _journal(
@@ -192,11 +186,10 @@ def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal
         if leaning[0] > config.leaning:
             return None
         axis = directions[:, 0]
-        tangents = crossed(axis, normals)
-        tangents /= np.maximum(lengths_of(tangents), 1e-12)[:, None]
+        tangents = unit(crossed(axis, normals))
         system = (tangents * weights[:, None]).T @ tangents
         aim = (tangents * weights[:, None]).T @ np.einsum("ij,ij->i", tangents, points)
         along = float(pivot @ axis)
         pivot = np.linalg.lstsq(system, aim, rcond=1e-6)[0]
         pivot = pivot + (along - float(pivot @ axis)) * axis
-    return Journal(axis=axis, pivot=pivot, radius=journal.radius, coverage=journal.coverage, span=journal.span)
+    return replace(journal, axis=axis, pivot=pivot)

@@ -16,7 +16,7 @@ from kinematify.contact.graph import pair
 from kinematify.joints.bearings.scores import across_axes
 from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.features.frames import UP
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of, unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -54,11 +54,10 @@ class MeasuredHypotheses:
         self.scene = scene
         self.hypotheses = hypotheses
         self.sided = sided
-        cache = scene.cache
         self.unit = max(scene.frame.diagonal, _TINY)
         """Diagonal of the child's box, the unit of most lengths [m]."""
-        self.child = cache.samples(scene.child)
-        self.parent = cache.samples(scene.parent)
+        self.child = scene.samples
+        self.parent = scene.parent_samples
         rng = np.random.default_rng(7)
         self.few = rng.permutation(len(self.child.points))[:_POINTS]
         near = self._near_child(self.parent.points)
@@ -82,12 +81,7 @@ class MeasuredHypotheses:
     @cached_property
     def arms(self) -> FloatArray:
         """From each line to the child's centre, across the line [m], shape (h, 3)."""
-        return self._across(self.scene.centre)
-
-    def _across(self, point: FloatArray) -> FloatArray:
-        offset = point - self.hypotheses.pivots
-        axes = self.hypotheses.axes
-        return np.asarray(offset - np.einsum("hk,hk->h", offset, axes)[:, None] * axes)
+        return self.hypotheses.arms(self.scene.centre)
 
     @cached_property
     def shared(self) -> tuple[FloatArray, FloatArray]:
@@ -261,8 +255,7 @@ def bearing(m: MeasuredHypotheses) -> _Found:
     h, scene = m.hypotheses, m.scene
     names = ("score", "surface", "circles", "surface_least", "circles_least", "axis")
     values: _Found = {f"bearing_{name}": np.zeros(len(h)) for name in names}
-    found = scene.bearing.lines if scene.bearing is not None else ()
-    for line in found:
+    for line in scene.lines:
         cosine = np.abs(h.axes @ line.axis)
         apart = lengths_of(crossed(line.pivot - h.pivots, line.axis)) / m.unit
         same = (cosine > np.cos(np.radians(2.0))) & ((apart < 0.02) | (h.kinds == SLIDE))
@@ -279,7 +272,7 @@ def bearing(m: MeasuredHypotheses) -> _Found:
     rail = scene.rail
     return {
         **values,
-        "bearing_best": max((line.score for line in found), default=0.0),
+        "bearing_best": max((line.score for line in scene.lines), default=0.0),
         "rail_best": 0.0 if rail is None else rail.score,
         "rail_along": 0.0 if rail is None else np.where(np.abs(h.axes @ rail.axis) > 0.999, rail.score, 0.0),
         "rail_lead": scene.rail_lead,
@@ -327,7 +320,7 @@ def place(m: MeasuredHypotheses) -> _Found:
         "off_least": np.where(across, np.abs(offset), 9.0).min(axis=1),
         "mean_radius": radius.mean(axis=1) / reach,
         "least_radius": radius.min(axis=1) / reach,
-        "eccentric": lengths_of(np.cross(points.mean(axis=0) - h.pivots, h.axes)) / reach,
+        "eccentric": lengths_of(crossed(points.mean(axis=0) - h.pivots, h.axes)) / reach,
         "reach": reach / m.unit,
         "length": length,
         "body_off_most": in_body.max(axis=1),
@@ -412,7 +405,7 @@ def where(m: MeasuredHypotheses) -> _Found:
         "inside_box": scene.inside,
         "inside_solid": at_rest.mean(),
         "enclosed": scene.enclosed,
-        "thin_up": abs(float(frame.axes[frame.thin] @ UP)),
+        "thin_up": abs(float(frame.thin_axis @ UP)),
         "long_up": abs(float(frame.axes[int(np.argmax(frame.extents))] @ UP)),
         "centre_thin": abs(float(centre[frame.thin])),
         "centre_most": np.abs(centre).max(),
@@ -493,9 +486,7 @@ def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> Fl
     """Return how much the surface winds about each line, as the blades of a propeller do, in [0, 1], shape (h,)."""
     h = m.hypotheses
     along = normals @ h.axes.T
-    way = m.velocity(points)
-    way /= np.maximum(lengths_of(way), _TINY)[..., None]
-    around = np.einsum("hnk,nk->nh", way, normals)
+    around = np.einsum("hnk,nk->nh", unit(m.velocity(points)), normals)
     wound = np.abs((along * around).mean(axis=0)) / np.maximum(np.abs(along * around).mean(axis=0), 0.02)
     return np.where(h.kinds == TURN, wound, np.nan)
 
@@ -536,7 +527,7 @@ def standing_in(m: MeasuredHypotheses) -> _Found:
         "shared_radius": radius.mean(axis=1),
         "shared_radius_most": radius.max(axis=1),
         "shared_along": np.ptp(points @ h.axes.T, axis=0) / m.unit,
-        "shared_offset": lengths_of(m._across(centre)) / m.unit,
+        "shared_offset": lengths_of(m.hypotheses.arms(centre)) / m.unit,
         "shared_at_end": np.abs(h.axes @ (centre - scene.centre)) / np.maximum(half, 0.02 * m.unit),
     }
 
@@ -655,9 +646,9 @@ def handle(m: MeasuredHypotheses) -> _Found:
     h, held = m.hypotheses, m.scene.handle
     if held is None:
         return {}
-    arm = lengths_of(m._across(held.centre)) / m.unit
+    arm = lengths_of(m.hypotheses.arms(held.centre)) / m.unit
     velocity = m.velocity(held.centre[None])[:, 0]
-    pull = np.abs(velocity @ m.scene.frame.axes[m.scene.frame.thin]) / np.maximum(lengths_of(velocity), 1e-9 * m.unit)
+    pull = np.abs(velocity @ m.scene.frame.thin_axis) / np.maximum(lengths_of(velocity), 1e-9 * m.unit)
     frame = m.scene.frame
     off = np.abs((held.centre - m.scene.centre) @ frame.axes.T) / np.maximum(0.5 * frame.extents, 0.02 * m.unit)
     towards = (held.centre - m.scene.centre) / m.unit
@@ -701,10 +692,7 @@ def _outward_rays(
     points: FloatArray, normals: FloatArray, lift: float, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
     """Four rays from each point into the half space that its normal shows, starts and unit directions, (4 n, 3)."""
-    directions = rng.normal(size=(4, *points.shape))
-    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
-    directions = directions + 1.05 * normals
-    directions /= np.maximum(lengths_of(directions), _TINY)[..., None]
+    directions = unit(unit(rng.normal(size=(4, *points.shape))) + 1.05 * normals)
     starts = np.broadcast_to(points + lift * normals, directions.shape)
     return starts.reshape(-1, 3), directions.reshape(-1, 3)
 
@@ -747,7 +735,7 @@ def neighbours(m: MeasuredHypotheses) -> _Found:
         "twin_coaxial": apart.min(axis=1) / m.unit,
         "twin_along": np.abs(h.axes @ direction),
         "twin_near": float(np.linalg.norm(nearest)) / m.unit,
-        "twin_thin": abs(float(direction @ scene.frame.axes[scene.frame.thin])),
+        "twin_thin": abs(float(direction @ scene.frame.thin_axis)),
         "twin_towards": -np.einsum("hk,k->h", m.arms, direction) / m.unit,
     }
 

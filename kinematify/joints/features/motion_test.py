@@ -151,32 +151,13 @@ def _fractions(cache: PartCache, ends: FloatArray, obstacles: Sequence[int]) -> 
     return fraction
 
 
-@dataclass(frozen=True, kw_only=True)
-class Clearance:
-    """Way that the contact itself can go before it is stopped, the longer of both directions.
+def contact_clearance(
+    scene: JointScene, axes: FloatArray, pivots: FloatArray, direction: FloatArray
+) -> tuple[float, float] | None:
+    """Measure how far a contact turns about the freest of several lines and slides, against the parent alone.
 
     Sweeps of a whole part skip the first steps, because meshes overlap where parts touch. Keys, splines, skirts,
     grooves and beads decide within them, so that the samples near the other part are swept without that grace.
-    """
-
-    turn: float
-    """Length of the arc at the contact's mean radius [m]; inf where it is not stopped."""
-    slide: float
-    """Length [m]; inf where it is not stopped."""
-
-    def slides_only(self, least: float, ratio: float) -> bool:
-        """It is stopped from turning, and slides by `least` [m] and by `ratio` times as far."""
-        return bool(np.isfinite(self.turn) and self.slide > max(least, ratio * self.turn))
-
-    def turns_only(self, least: float, ratio: float) -> bool:
-        """It is stopped from sliding, and turns by `least` [m] and by `ratio` times as far."""
-        return bool(np.isfinite(self.slide) and self.turn > max(least, ratio * self.slide))
-
-
-def contact_clearance(
-    scene: JointScene, axes: FloatArray, pivots: FloatArray, direction: FloatArray
-) -> Clearance | None:
-    """Measure how far a contact turns about the freest of several lines and slides, against the parent alone.
 
     Args:
         scene: The pair.
@@ -185,7 +166,8 @@ def contact_clearance(
         direction: Unit direction of the slide, shape (3,).
 
     Returns:
-        The clearance; None where the contact has too few samples.
+        Length of the arc at the contact's mean radius and that of the slide, the longer of both directions [m], inf
+        where it is not stopped; None where the contact has too few samples.
     """
     points = _followed(scene)
     if points is None:
@@ -193,9 +175,9 @@ def contact_clearance(
     limit = np.radians(scene.config.clearance.turn_deg)
     turned = turn_paths(scene.cache, points, axes, pivots, limit=limit, config=_strict(scene.config))
     free = turned.against((scene.parent,)).free(_share(scene)).max(axis=1)
-    radii = np.linalg.norm(crossed(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
+    radii = lengths_of(crossed(points[None] - pivots[:, None], axes[:, None])).mean(axis=1)
     arcs = np.where(free >= limit, np.inf, free * radii)
-    return Clearance(turn=float(arcs.max()), slide=float(_slid(scene, points, direction).max()))
+    return float(arcs.max()), float(_slid(scene, points, direction).max())
 
 
 def slide_clearance(scene: JointScene, direction: FloatArray) -> FloatArray | None:

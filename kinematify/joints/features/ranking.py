@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import GIVEN
-
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -39,7 +37,7 @@ class Ranked:
     @property
     def proposed(self) -> Ranked:
         """Without those that were given."""
-        return self.at(np.flatnonzero(np.array(self.lines.sources) != GIVEN))
+        return self.at(np.flatnonzero(~self.lines.given))
 
     @property
     def best_first(self) -> Ranked:
@@ -48,7 +46,7 @@ class Ranked:
 
     def first(self, count: int | None) -> Ranked:
         """The first of them, and those that were given; all where `count` is None."""
-        given = np.array(self.lines.sources) == GIVEN
+        given = self.lines.given
         return self.at(np.flatnonzero(given | (np.cumsum(~given) <= (count or len(given)))))
 
     def at(self, index: IntArray) -> Ranked:

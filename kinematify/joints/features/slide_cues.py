@@ -25,6 +25,7 @@ WEIGHTS = {
 }  # fmt: skip
 """Of each cue of a slide, lengths in diagonals; as those of turns."""
 CAP = 2.5  # the most that one cue says
+_DOMINANT = 0.7  # share of the normals of a contact along one direction, from which it is pressed along that
 
 
 def rank_slides(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ranked:
@@ -94,8 +95,8 @@ def _small_way(scene: JointScene, points: FloatArray, axes: FloatArray, config: 
 
 def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
     """Return how close the leading face is to the outside of the body, in lengths of the part, for the free way out."""
-    samples = scene.cache.samples(scene.child).points @ axes.T
-    body = scene.cache.samples(scene.parent).points @ axes.T
+    samples = scene.samples.points @ axes.T
+    body = scene.parent_samples.points @ axes.T
     length = np.maximum(np.ptp(samples, axis=0), 1e-12)
     ahead = np.maximum(body.max(axis=0) - samples.max(axis=0), 0.0) / length
     behind = np.maximum(samples.min(axis=0) - body.min(axis=0), 0.0) / length
@@ -105,17 +106,17 @@ def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
 
 def _shape_cues(scene: JointScene, axes: FloatArray, with_parent: Sweep, config: JointsConfig) -> dict[str, FloatArray]:
     large = 1.0 - scene.smallness
-    thin = np.abs(axes @ scene.frame.axes[scene.frame.thin])
-    normal = scene.contact.normal
-    pressed = np.abs(axes @ normal) if normal is not None else np.zeros(len(axes))
+    thin = np.abs(axes @ scene.frame.thin_axis)
+    shares, facing = scene.contact.facing
+    pressed = np.abs(axes @ facing[:, 2]) * (shares[2] > _DOMINANT)
     free = with_parent.free(config.sweep.share)
     rising = np.where(axes[:, 2] >= 0, free[:, 0], free[:, 1]) > 0.1 * scene.diagonal
     bearing = np.zeros(len(axes))
-    if scene.bearing is not None and scene.has_bearing:
-        bearing = np.abs(axes @ scene.bearing.lines[0].axis)
+    if scene.has_bearing:
+        bearing = np.abs(axes @ scene.lines[0].axis)
     rail = np.zeros(len(axes))
-    if scene.bearing is not None and scene.bearing.rail is not None:
-        rail = scene.mechanism * scene.prismatic_score * np.abs(axes @ scene.bearing.rail.axis)
+    if scene.rail is not None:
+        rail = scene.mechanism * scene.prismatic_score * np.abs(axes @ scene.rail.axis)
     return {
         "thin_large": large * thin,
         "horizontal": large * (1.0 - np.abs(axes @ UP)),

@@ -16,7 +16,7 @@ from kinematify.joints.features.frames import UP
 from kinematify.joints.features.measurements import turned_about
 from kinematify.joints.features.motion_test import moving_points, turn_paths
 from kinematify.joints.features.ranking import Ranked, cue_sum
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of, unit
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig
@@ -59,7 +59,7 @@ def rank_turns(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ra
         **_gravity_cues(scene, lines, with_parent),
     }
     cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
-    bonus = BEARING_BONUS * np.array([source == "bearing" for source in lines.sources])
+    bonus = BEARING_BONUS * (lines.sources == "bearing")
     return Ranked(
         lines=lines,
         scores=cue_sum(cues, WEIGHTS, CAP) + bonus,
@@ -76,21 +76,15 @@ def _radii(points: FloatArray, lines: Hypotheses) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(np.einsum("cnk,cnk->cn", offset, offset) - along**2, 0.0)))
 
 
-def _arms(point: FloatArray, lines: Hypotheses) -> FloatArray:
-    """Vector from each line to a point, across the line [m], shape (c, 3)."""
-    offset = point - lines.pivots
-    return np.asarray(offset - np.einsum("ck,ck->c", offset, lines.axes)[:, None] * lines.axes)
-
-
 def _reach(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Largest distance of the child from each line [m], shape (c,)."""
-    points = scene.cache.samples(scene.child).points
+    points = scene.samples.points
     return np.asarray(np.maximum(_radii(points, lines).max(axis=1), 1e-12))
 
 
 def outwardness(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Cosine between the first motion of the centre (turning about +) and the way out of the body, shape (c,)."""
-    velocity = crossed(lines.axes, _arms(scene.centre, lines))
+    velocity = crossed(lines.axes, lines.arms(scene.centre))
     speed = lengths_of(velocity)
     away = scene.outward
     if not away.any():
@@ -127,7 +121,7 @@ def _motion_cues(
 
 def _separation(scene: JointScene, lines: Hypotheses, sign: FloatArray, config: JointsConfig) -> FloatArray:
     """Gap to the parent after a turn of `panels.part_deg` in the preferred direction, fraction of the diagonal."""
-    points = scene.cache.samples(scene.child).points
+    points = scene.samples.points
     points = points[:: max(1, len(points) // config.panels.separation_points)]
     before = float(scene.cache.distances(scene.parent, points).min())
     angle = sign * np.radians(config.panels.part_deg)
@@ -138,10 +132,10 @@ def _separation(scene: JointScene, lines: Hypotheses, sign: FloatArray, config: 
 
 def _contact_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
     """Return how close to the line the parts touch, and how close the line runs to the parent."""
-    along = (scene.frame.local(scene.cache.samples(scene.child).points)).T
+    along = (scene.frame.local(scene.samples.points)).T
     half = 0.5 * np.ptp(along, axis=1)
     span = np.abs(lines.axes @ scene.frame.axes.T) @ half
-    foot = scene.centre - _arms(scene.centre, lines)
+    foot = scene.centre - lines.arms(scene.centre)
     steps = np.linspace(-0.9, 0.9, 7)
     probes = foot[:, None] + steps[None, :, None] * (span[:, None] * lines.axes)[:, None]
     to_parent = scene.cache.distances(scene.parent, probes.reshape(-1, 3)).reshape(len(span), -1)
@@ -172,7 +166,7 @@ def _handle_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> 
     n = len(lines.axes)
     if scene.handle is None:
         return {"handle_distance": np.zeros(n), "handle_parallel": np.zeros(n)}
-    distance = lengths_of(_arms(scene.handle.centre, lines)) / _reach(scene, lines)
+    distance = lengths_of(lines.arms(scene.handle.centre)) / _reach(scene, lines)
     parallel = np.abs(lines.axes @ scene.handle.direction)
     # Handles of tall doors are mounted either way; one that lies level in the middle is that of a door that drops.
     tall = scene.upright and _tallness(scene) > config.panels.tall and not _handle_in_the_middle(scene)
@@ -188,7 +182,7 @@ def _margin_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> 
     here, opposite = np.zeros(n), np.zeros(n)
     if scene.panel:
         frame = scene.frame
-        arms = -_arms(scene.centre, lines) @ frame.axes.T
+        arms = -lines.arms(scene.centre) @ frame.axes.T
         arms[:, frame.thin] = 0.0
         side = np.argmax(np.abs(arms), axis=1)
         low = frame.slab_lower - scene.body_box[0]
@@ -239,7 +233,7 @@ def _tallness(scene: JointScene) -> float:
 def _gravity_cues(scene: JointScene, lines: Hypotheses, with_parent: Sweep) -> dict[str, FloatArray]:
     """Doors turn about upright lines or drop down, lids rise, and a lid's hinge is where the body stands higher."""
     vertical = np.abs(lines.axes @ UP)
-    arms = -_arms(scene.centre, lines)
+    arms = -lines.arms(scene.centre)
     length = lengths_of(arms)
     height = arms[:, 2] / np.maximum(length, 1e-9 * scene.diagonal)
     door = float(scene.panel and scene.upright)
@@ -269,15 +263,14 @@ def _heel(scene: JointScene, lines: Hypotheses, arms: FloatArray) -> FloatArray:
 
 def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
     """Return how much more of the body stands above the lid on the hinge's side than opposite, in [-1, 1]."""
-    samples = scene.cache.samples(scene.parent)
+    samples = scene.parent_samples
     top = float(scene.cache.assembly.parts[scene.child].bounds[1, 2])
     above = samples.points[:, 2] > top
     if above.mean() < 0.02:
         return np.zeros(len(arms))
     level = arms.copy()
     level[:, 2] = 0.0
-    level /= np.maximum(lengths_of(level), 1e-9 * scene.diagonal)[:, None]
-    side = np.sign((samples.points[above] - scene.centre) @ level.T)
+    side = np.sign((samples.points[above] - scene.centre) @ unit(level, 1e-9 * scene.diagonal).T)
     return np.asarray(side.mean(axis=0))
 
 
@@ -287,9 +280,9 @@ def _shape_cues(scene: JointScene, lines: Hypotheses, near: FloatArray) -> dict[
     A round part that touches only far from its own axis (a porthole on its hinge) does not turn about that axis.
     """
     frame = scene.frame
-    thin = np.abs(lines.axes @ frame.axes[frame.thin])
+    thin = np.abs(lines.axes @ frame.thin_axis)
     along = np.abs(lines.axes @ frame.axes.T) @ frame.extents / max(float(frame.extents.max()), 1e-12)
-    place, source = lines.places, np.array(lines.sources)
+    place, source = lines.places, lines.sources
     turned = np.maximum(_roundness(scene, lines), scene.disc * (place == CENTRE) * (thin > 0.99))
     turned *= 1.0 - scene.compact * (1.0 - near)
     by_contact = (source == "weak_bearing") | (source == "contact_axis")
@@ -299,9 +292,9 @@ def _shape_cues(scene: JointScene, lines: Hypotheses, near: FloatArray) -> dict[
     return {
         "thin_along": thin * (1.0 - turned) * (1.0 - scene.mechanism),
         "length_along": along,
-        "half_way": (place == HALF_WAY).astype(np.float64),
-        "centre_line": (place == CENTRE).astype(np.float64),
-        "contact_line": (source == "contact_line").astype(np.float64),
+        "half_way": 1.0 * (place == HALF_WAY),
+        "centre_line": 1.0 * (place == CENTRE),
+        "contact_line": 1.0 * (source == "contact_line"),
         "weak_bearing": (1.0 - scene.mechanism) * (source == "weak_bearing"),
         "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _bearing_ratio(scene, lines) * near,
         "small_normal": max(scene.smallness, scene.compact) * normal * stands,
@@ -321,23 +314,21 @@ def _squareness(scene: JointScene, lines: Hypotheses) -> FloatArray:
 def _rolling(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """1 for the lines through the middle of a wheel on the floor, along its axle, shape (c,)."""
     frame = scene.frame
-    along = np.abs(lines.axes @ frame.axes[frame.thin]) > np.cos(np.radians(10.0))
-    off = lengths_of(_arms(scene.centre, lines)) / float(frame.extents.max())
+    along = np.abs(lines.axes @ frame.thin_axis) > np.cos(np.radians(10.0))
+    off = lengths_of(lines.arms(scene.centre)) / float(frame.extents.max())
     return np.asarray(along & (off < 0.1) & scene.rolls, dtype=np.float64)
 
 
 def _bearing_ratio(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Score of each bearing line over that of the best one; 0 for other lines."""
-    if scene.bearing is None or not scene.bearing.lines:
-        return np.zeros(len(lines.sources))
-    scores = iter(line.score for line in scene.bearing.lines)
-    best = max(scene.bearing.lines[0].score, 1e-12)
+    scores = iter(line.score for line in scene.lines)
+    best = max([1e-12, *(line.score for line in scene.lines)])
     return np.array([next(scores) / best if source in ("bearing", "weak_bearing") else 0.0 for source in lines.sources])
 
 
 def _roundness(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Share of the child's area across the line's direction that turns into itself about the line, from 0.5 to 1."""
-    samples = scene.cache.samples(scene.child)
+    samples = scene.samples
     result = np.zeros(len(lines.axes))
     for c, (axis, pivot) in enumerate(zip(lines.axes, lines.pivots, strict=True)):
         lateral = np.abs(samples.normals @ axis) < 0.9
@@ -345,7 +336,6 @@ def _roundness(scene: JointScene, lines: Hypotheses) -> FloatArray:
             continue
         offset = samples.points[lateral] - pivot
         radial = offset - (offset @ axis)[:, None] * axis
-        radial /= np.maximum(lengths_of(radial), 1e-12)[:, None]
-        miss = np.abs(np.einsum("ij,ij->i", crossed(axis, radial), samples.normals[lateral]))
+        miss = np.abs(np.einsum("ij,ij->i", crossed(axis, unit(radial)), samples.normals[lateral]))
         result[c] = np.clip(2.0 * float((miss < np.sin(np.radians(12.0))).mean()) - 1.0, 0.0, 1.0)
     return result

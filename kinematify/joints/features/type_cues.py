@@ -13,6 +13,7 @@ import numpy as np
 
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import contact_clearance
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,10 +48,8 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
     cues = {
         **_room_cues(scene, slides),
         **_shape_cues(scene, turns),
-        **{
-            "row": scene.smallness * (len(scene.twins) >= 2),
-            "gripper": float(scene.gripping),
-        },
+        "row": scene.smallness * (len(scene.twins) >= 2),
+        "gripper": float(scene.gripping),
         **_clearance_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
     }
@@ -81,10 +80,10 @@ def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsC
     Nor is it one where the part turns freely about any line and is soon stopped along the rail: boxy knuckles that
     stand in each other are extruded as well.
     """
-    if scene.bearing is None or scene.bearing.rail is None:
+    if scene.rail is None:
         return 0.0
-    rail = scene.bearing.rail.axis
-    along = bool(scene.bearing.lines) and abs(float(scene.bearing.lines[0].axis @ rail)) > 0.95
+    rail = scene.rail.axis
+    along = any(abs(float(line.axis @ rail)) > 0.95 for line in scene.lines[:1])
     turn = float(np.degrees(turns.free_parent[0].max()))
     if along and turn > config.rails.pin_deg:
         return 0.0
@@ -99,27 +98,29 @@ def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: Jo
     clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0])
     if clearance is None:
         return {"keyed": 0.0, "retained": 0.0}
+    turn, slide = clearance
     least = config.clearance.least * scene.frame.diagonal
+
+    def goes(free: float, other: float) -> bool:
+        """One motion is free where the other one is stopped."""
+        return bool(np.isfinite(other) and free > max(least, config.clearance.ratio * other))
+
     # Round buttons are stopped early both ways; what else is stopped both ways rather overlaps its parent.
-    guided = scene.has_bearing or np.isinf(clearance.slide)
+    guided = scene.has_bearing or np.isinf(slide)
     if scene.serial:
         # Links of machines overlap where they meet; guided are rods in bores that cannot turn as a whole either, and
         # what is extruded along its slide, nowhere round, and stopped within its clearance.
         blocked = float(turns.free_parent[0].max()) < np.radians(config.rails.pin_deg)
-        guided = (
-            blocked if scene.has_bearing else _extruded(scene, slides.axes[0], config) and clearance.turn < 2.0 * least
-        )
+        guided = blocked if scene.has_bearing else _extruded(scene, slides.axes[0], config) and turn < 2.0 * least
     return {
-        "keyed": float(guided and clearance.slides_only(least, config.clearance.ratio)),
-        "retained": float(clearance.turns_only(least, config.clearance.ratio))
-        * (1.0 - scene.smallness * (not scene.has_bearing))
-        * (not scene.serial),
+        "keyed": float(guided and goes(slide, turn)),
+        "retained": float(goes(turn, slide)) * (1.0 - scene.smallness * (not scene.has_bearing)) * (not scene.serial),
     }
 
 
 def _extruded(scene: JointScene, direction: FloatArray, config: JointsConfig) -> bool:
     """True if the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
-    rail = None if scene.bearing is None else scene.bearing.rail
+    rail = scene.rail
     return rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > config.rails.lead_full
 
 
@@ -129,7 +130,7 @@ def _near_best(scene: JointScene, turns: Ranked, config: JointsConfig) -> IntArr
         return np.zeros(1, dtype=np.int64)
     axes, pivots = turns.axes[: config.clearance.candidates], turns.lines.pivots[: config.clearance.candidates]
     offset = pivots - pivots[0]
-    apart = np.linalg.norm(np.cross(offset, axes[0]), axis=1)
+    apart = lengths_of(crossed(offset, axes[0]))
     same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < config.clearance.edge * scene.frame.diagonal)
     return np.flatnonzero(same)[: config.clearance.lines]
 
@@ -168,7 +169,7 @@ def _channel(scene: JointScene, slides: Ranked) -> float:
 
 def _is_box(scene: JointScene) -> bool:
     """All three directions of the frame hold a fair share of the surface."""
-    samples = scene.cache.samples(scene.child)
+    samples = scene.samples
     facing = np.abs(samples.normals @ scene.frame.axes.T) > np.cos(np.radians(15.0))
     return bool(facing.mean(axis=0).min() > 0.06)
 

@@ -15,7 +15,7 @@ from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
 from kinematify.geometry.solid import thinned
 from kinematify.joints.features.frames import body_axes
-from kinematify.robot.vectors import all_three, crossed, lengths_of
+from kinematify.robot.vectors import all_three, lengths_of, triangle_normals, unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,12 +65,6 @@ class ContactView:
         """Shares of the child's normals along their principal axes, ascending, and these axes; as above."""
         values, vectors = np.linalg.eigh((self.normals * self.weights[:, None]).T @ self.normals)
         return values, vectors
-
-    @property
-    def normal(self) -> FloatArray | None:
-        """Dominant direction of the child's normals, shape (3,); None without a dominant one."""
-        values, vectors = self.facing
-        return np.asarray(vectors[:, 2]) if values[2] > 0.7 else None
 
 
 class PartCache:
@@ -160,10 +154,7 @@ class PartCache:
             return np.empty(0), np.empty((0, 3)), np.empty((0, 3))
         tree = self._tree(part)
         distances, index, closest = tree.nearest(points)
-        corners = tree.vertices[tree.faces[index]]
-        normals = crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
-        return distances, closest, normals
+        return distances, closest, unit(triangle_normals(tree.vertices[tree.faces[index]]), 1e-300)
 
     def inside(self, part: int, points: FloatArray) -> BoolArray:
         """Test whether points (n, 3) in the world frame are in the solid of a part, by winding number, shape (n,)."""

@@ -48,17 +48,16 @@ def propose(scene: JointScene, given: Sequence[Line] = ()) -> Hypotheses:
         axes=np.concatenate([np.zeros((1, 3)), axes, np.array([axis for axis, _ in slides])]),
         pivots=np.concatenate([scene.anchor[None], pivots, np.tile(scene.anchor, (count, 1))]),
         places=np.array([ELSEWHERE, *(place for _, _, place, _ in turns), *[ELSEWHERE] * count]),
-        sources=("fixed", *(source for _, _, _, source in turns), *(source for _, source in slides)),
+        sources=np.array(["fixed", *(source for _, _, _, source in turns), *(source for _, source in slides)]),
     )
 
 
 def _turns(scene: JointScene) -> list[Proposal]:
     """Bearing lines, lines through the contact, nine lines per direction of the slab's box, lines through centres."""
     found: list[Proposal] = []
-    if scene.bearing is not None:
-        for line in scene.bearing.lines[: scene.config.panels.bearings]:
-            beyond_doubt = scene.has_bearing and not found
-            found.append((line.axis, line.pivot, ELSEWHERE, "bearing" if beyond_doubt else "weak_bearing"))
+    for line in scene.lines[: scene.config.panels.bearings]:
+        beyond_doubt = scene.has_bearing and not found
+        found.append((line.axis, line.pivot, ELSEWHERE, "bearing" if beyond_doubt else "weak_bearing"))
     found += _contact_lines(scene)
     found += _box_lines(scene)
     return found + _distinct(scene, centre_lines(scene), found)
@@ -69,8 +68,8 @@ def _slides(scene: JointScene) -> list[tuple[FloatArray, str]]:
     found: list[tuple[FloatArray, str]] = []
     if scene.rail is not None and scene.mechanism > 0:
         found.append((scene.rail.axis, "rail"))
-    if scene.bearing is not None and scene.bearing.lines and scene.has_bearing:
-        found.append((scene.bearing.lines[0].axis, "bearing"))
+    if scene.has_bearing:
+        found.append((scene.lines[0].axis, "bearing"))
     found += [(axis, "box") for axis in scene.frame.axes]
     found += [(axis, "parent_box") for axis in scene.parent_frame.axes]
     return [found[k] for k in distinct_axes([axis for axis, _ in found], scene.config.slides.distinct_deg)]
@@ -140,7 +139,7 @@ def centre_lines(scene: JointScene) -> list[tuple[FloatArray, FloatArray]]:
     """
     shared = np.concatenate([_within(scene, scene.child, scene.parent), _within(scene, scene.parent, scene.child)])
     held = 0.5 * (shared.min(axis=0) + shared.max(axis=0)) if len(shared) >= _LEAST_SHARED else scene.anchor
-    points = (held, scene.cache.samples(scene.child).points.mean(axis=0))
+    points = (held, scene.samples.points.mean(axis=0))
     return [(axis, point) for point in points for axis in _centre_directions(scene, held)]
 
 
@@ -157,7 +156,7 @@ def _centre_directions(scene: JointScene, held: FloatArray) -> list[FloatArray]:
     """Distinct axes of the whole object, the boxes of parent and child, and those across the way out of the parent."""
     away = scene.centre - held
     found = [*scene.cache.upright_axes, *scene.parent_frame.axes, *scene.frame.axes]
-    for first, second in ((away, UP), (away, scene.frame.axes[scene.frame.thin])):
+    for first, second in ((away, UP), (away, scene.frame.thin_axis)):
         across = crossed(first, second)
         length = float(np.linalg.norm(across))
         if length > _LEAST_ACROSS * float(np.linalg.norm(first)) > 0.0:
