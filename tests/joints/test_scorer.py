@@ -11,7 +11,13 @@ from benchmarks.fit.trees import recipe_key
 from kinematify.contact.graph import pair
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
-from kinematify.joints.choice.scorer import shipped_scorer
+from kinematify.joints.choice.scorer import (
+    OPENING_WEIGHTS,
+    RIGID_WEIGHTS,
+    TURNING_WEIGHTS,
+    WEIGHTS,
+    shipped_scorer,
+)
 from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import PartCache, point_cloud
 from tests.joints.joint_scenes import CONFIG, evidence
@@ -51,8 +57,8 @@ def test_probabilities_follow_the_hypotheses_in_any_order() -> None:
 def test_what_is_not_finite_counts_as_not_known() -> None:
     features = first_features("drawer")
     hypotheses, measured, cloud = features.hypotheses, features.columns, cloud_of(features)
-    broken = {**measured, "slip_contact": np.full(len(hypotheses), np.inf)}
-    missing = {name: value for name, value in measured.items() if name != "slip_contact"}
+    broken = {**measured, "contact_radius": np.full(len(hypotheses), np.inf)}
+    missing = {name: value for name, value in measured.items() if name != "contact_radius"}
     scorer = shipped_scorer()
     found = scorer.probabilities(hypotheses, broken, cloud)
     assert np.isfinite(found).all()
@@ -61,6 +67,14 @@ def test_what_is_not_finite_counts_as_not_known() -> None:
 
 def test_the_measurements_are_those_that_were_fitted() -> None:
     assert set(first_features("edge_door").columns) <= set(shipped_scorer().measurements)
+
+
+@pytest.mark.parametrize("name", [WEIGHTS, RIGID_WEIGHTS, OPENING_WEIGHTS, TURNING_WEIGHTS])
+def test_weights_read_nothing_that_is_measured_no_more(name: str) -> None:
+    """Names of what went after a fit are in the provenance alone."""
+    scorer = shipped_scorer(name)
+    assert len(set(scorer.measurements)) == len(scorer.measurements)
+    assert not {*scorer.provenance["retired"], "retired"} & set(scorer.measurements)
 
 
 def test_the_weights_are_those_of_the_committed_recipe() -> None:

@@ -56,8 +56,7 @@ FORMAT = 2
 
 SUMMARIES = (
     "enter_parent_1", "enter_parent_2", "enter_others_2", "enter_back_2", "stop_parent_2", "kept_large",
-    "kept_small", "slip_contact", "slip_parent_contact", "slip_child", "bearing_score", "contact_radius",
-    "uncovers", "gap_large",
+    "kept_small", "bearing_score", "contact_radius", "gap_large",
 )  # fmt: skip
 """Measurements of which every hypothesis also has the best and worst among all turns and among all slides."""
 

@@ -101,7 +101,6 @@ def _cues(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
         "slide_room_parent": of_slides(slides.free_parent.max(axis=1)),
         **{f"turn_{name}": of_turns(value) for name, value in turns.cues.items()},
         **{f"slide_{name}": of_slides(value) for name, value in slides.cues.items()},
-        "slide_retired": of_slides(np.zeros(m)),  # stands for cues that went after the fit
         **{name: np.full(1 + n + m, float(value)) for name, value in facts.items()},
     }
 
@@ -115,7 +114,6 @@ def _verdicts(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
     cues = type_cues(scene, *proposed, scene.config)
     odds = float(np.clip(type_odds(cues), -_ODDS, _ODDS))
     facts = {f"{TYPE}{name}": value for name, value in cues.items()}
-    facts["retired"] = 0.0  # stands for the cues that went after the fit; the next one reads nothing of it
     return {
         "rules_score": np.concatenate([[np.nan], *(found.scores - found.scores.max() for found in (turns, slides))]),
         "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),

@@ -13,31 +13,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.joints.bearings.scores import across_axes
 from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.features.frames import UP
-from kinematify.robot.vectors import crossed, lengths_of, unit
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.features.edge_scene import JointScene
-    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 _POINTS = 90  # of a part, in tests of motion
 _CONTACT_POINTS = 50
-_FEW = 50  # in tests of symmetry
-_TRIED = 400  # samples of a part that may lie in the other solid
-_LEAST_SHARED = 5  # of some 800 points that may lie in the other solid
 _TURNS = np.radians([3.0, 10.0, 30.0, 75.0])
 _SLIDES = np.array([0.03, 0.1, 0.25, 0.6])  # of the child's diagonal
-_OPEN = 2  # the step at which what a motion opens is measured
-_ALIKE = 0.01  # of the child's diagonal: a mirror image this far off is 1/e alike
+_SMALL, _LARGE = 1, 2  # the steps at which the contact is measured
 _TINY = 1e-12
-_LEVEL = 1e-6  # of the child's diagonal: less is rounding
-_FIRST_SECTOR = np.pi + 0.1  # [rad]
 
 
 class MeasuredHypotheses:
@@ -60,19 +53,15 @@ class MeasuredHypotheses:
         self.parent = scene.parent_samples
         rng = np.random.default_rng(7)
         self.few = rng.permutation(len(self.child.points))[:_POINTS]
-        near = self._near_child(self.parent.points)
-        self.few_parent = rng.permutation(near)[:_POINTS]
+        (low, high), slack = scene.cache.assembly.parts[scene.child].bounds, 0.25 * self.unit
+        near = np.all((self.parent.points > low - slack) & (self.parent.points < high + slack), axis=1)
+        self.few_parent = rng.permutation(np.flatnonzero(near))[:_POINTS]
         contact = scene.contact
         self.few_contact = (
             rng.choice(len(contact.points), _CONTACT_POINTS, p=contact.weights)
             if len(contact.points)
             else np.empty(0, dtype=np.int64)
         )
-
-    def _near_child(self, points: FloatArray) -> IntArray:
-        low, high = self.scene.cache.assembly.parts[self.scene.child].bounds
-        slack = 0.25 * self.unit
-        return np.flatnonzero(np.all((points > low - slack) & (points < high + slack), axis=1))
 
     def of_each(self, value: FloatArray | float) -> FloatArray:
         """A value of each hypothesis, shape (h,), of one that may be the same of all."""
@@ -82,15 +71,6 @@ class MeasuredHypotheses:
     def arms(self) -> FloatArray:
         """From each line to the child's centre, across the line [m], shape (h, 3)."""
         return self.hypotheses.arms(self.scene.centre)
-
-    @cached_property
-    def shared(self) -> tuple[FloatArray, FloatArray]:
-        """Samples of the child in the solid of the parent and of the parent in the child [m], (n, 3) and (k, 3)."""
-        scene = self.scene
-        own = self.child.points[:: max(1, len(self.child.points) // _TRIED)]
-        near = self.parent.points[self._near_child(self.parent.points)]
-        near = near[:: max(1, len(near) // _TRIED)]
-        return own[scene.cache.inside(scene.parent, own)], near[scene.cache.inside(scene.child, near)]
 
     def radii(self, points: FloatArray) -> FloatArray:
         """Distances of points (n, 3) from each line [m], shape (h, n)."""
@@ -203,51 +183,20 @@ def contact_motion(m: MeasuredHypotheses) -> _Found:
     result: _Found = {}
     values = np.zeros((len(h), 2, 2, 3))
     for side, k, amounts in m.steps:
-        if k not in (1, _OPEN):
+        if k not in (_SMALL, _LARGE):
             continue
         moved = m.moved(points, amounts)
         gap = scene.cache.distances(scene.parent, moved.reshape(-1, 3)).reshape(moved.shape[:2])
         kept = gap < before + tolerance
-        values[:, side, int(k == _OPEN), 0] = (gap[:, : len(own)].min(axis=1) - before[: len(own)].min()) / m.unit
-        values[:, side, int(k == _OPEN), 1] = kept[:, len(own) :].mean(axis=1) if len(touching) else 0.0
-        values[:, side, int(k == _OPEN), 2] = (gap[:, : len(own)] - before[: len(own)]).mean(axis=1) / m.unit
+        values[:, side, int(k == _LARGE), 0] = (gap[:, : len(own)].min(axis=1) - before[: len(own)].min()) / m.unit
+        values[:, side, int(k == _LARGE), 1] = kept[:, len(own) :].mean(axis=1) if len(touching) else 0.0
+        values[:, side, int(k == _LARGE), 2] = (gap[:, : len(own)] - before[: len(own)]).mean(axis=1) / m.unit
     rows = np.arange(len(h))
     for k, step in enumerate(("small", "large")):
         for j, name in enumerate(("gap", "kept", "leaving")):
             result[f"{name}_{step}"] = values[rows, m.better, k, j]
             result[f"{name}_{step}_back"] = values[rows, 1 - m.better, k, j]
     return result
-
-
-def sliding_surface(m: MeasuredHypotheses) -> _Found:
-    """Share of the contact, and of the whole child, that slides along itself under the first motion."""
-    contact, few, every = m.scene.contact, m.few_parent, slice(None, None, max(1, len(m.child.points) // 400))
-    ones = np.ones(len(contact.parent_points)) / max(len(contact.parent_points), 1)
-    points, normals = m.child.points[every], m.child.normals[every]
-    return {
-        **_slips(m, "contact", contact.points, contact.normals, contact.weights),
-        **_slips(m, "parent_contact", contact.parent_points, contact.parent_normals, ones),
-        **_slips(m, "child", points, normals, np.ones(len(points))),
-        **_slips(m, "near", m.parent.points[few], m.parent.normals[few], np.ones(len(few))),
-    }
-
-
-def _slips(m: MeasuredHypotheses, name: str, points: FloatArray, normals: FloatArray, weights: FloatArray) -> _Found:
-    if len(points) == 0:
-        return {f"slip_{name}": 1.0, f"slide_share_{name}": 0.0}
-    if len(points) > 400:
-        stride = len(points) // 400
-        points, normals, weights = points[::stride], normals[::stride], weights[::stride]
-    velocity = m.velocity(points)
-    speed = np.maximum(lengths_of(velocity), _TINY)
-    across = np.abs(np.einsum("hnk,nk->hn", velocity, normals))
-    weights = weights / max(float(weights.sum()), _TINY)
-    rms = np.sqrt((across**2 @ weights) / np.maximum((speed**2) @ weights, _TINY))
-    share = (across < np.sin(np.radians(10.0)) * speed) @ weights
-    # Round surface alone: flat area across the axis turns into itself about every line along the axis.
-    lateral = np.abs(m.hypotheses.axes @ normals.T) < 0.7
-    round_share = ((across < np.sin(np.radians(6.0)) * speed) & lateral) @ weights
-    return {f"slip_{name}": rms, f"slide_share_{name}": share, f"lateral_{name}": round_share}
 
 
 def bearing(m: MeasuredHypotheses) -> _Found:
@@ -299,14 +248,6 @@ def place(m: MeasuredHypotheses) -> _Found:
     foot = scene.centre - m.arms
     in_body = (foot @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
     in_body = np.where(np.abs(h.axes @ frame.axes.T) < 0.7, np.abs(in_body), 0.0)
-    centre = (scene.centre @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
-    outer = -m.arms @ frame.axes.T
-    outer = np.where(np.abs(outer) < _LEVEL * m.unit, 0.0, outer)  # a line through the centre is on neither side
-    side = np.argmax(np.abs(outer), axis=1)
-    rows = np.arange(len(h))
-    low, high = frame.slab_lower - body[0], body[1] - frame.slab_upper
-    towards = outer[rows, side] > 0
-    near, far = np.where(towards, high[side], low[side]), np.where(towards, low[side], high[side])
     steps = np.linspace(-0.9, 0.9, 7)
     span = 0.5 * length * m.unit
     probes = foot[:, None] + steps[None, :, None] * (span[:, None] * h.axes)[:, None]
@@ -325,9 +266,6 @@ def place(m: MeasuredHypotheses) -> _Found:
         "length": length,
         "body_off_most": in_body.max(axis=1),
         "body_off_sum": in_body.sum(axis=1),
-        "hinge_outward": np.sign(outer[rows, side]) * centre[side],
-        "margin_here": near / m.unit,
-        "margin_opposite": far / m.unit,
         "line_to_parent": to_parent.mean(axis=1),
         "line_to_parent_least": to_parent.min(axis=1),
         "line_to_child": to_child.mean(axis=1),
@@ -394,13 +332,10 @@ def where(m: MeasuredHypotheses) -> _Found:
     frame, body = scene.frame, scene.body_box
     size = np.maximum(body[1] - body[0], 1e-3 * m.unit)
     centre = (scene.centre @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
-    along = np.abs(h.axes @ frame.axes.T)
     low, high = scene.cache.assembly.bounds
     whole = (scene.centre - low) / np.maximum(high - low, _TINY)
     at_rest = scene.cache.inside(scene.parent, m.child.points[m.few] - 0.01 * m.unit * m.child.normals[m.few])
     own, its = (scene.cache.assembly.parts[part].bounds for part in (scene.child, scene.parent))
-    ahead = np.minimum(np.abs(frame.lower - body[0]), np.abs(body[1] - frame.upper)) / m.unit
-    filling = frame.extents / size
     return {
         "inside_box": scene.inside,
         "inside_solid": at_rest.mean(),
@@ -412,211 +347,10 @@ def where(m: MeasuredHypotheses) -> _Found:
         "centre_up": (scene.centre - its.mean(axis=0)) @ UP / max(float(np.ptp(its[:, 2])), 1e-3 * m.unit),
         "height": whole[2],
         "to_floor": (own[0, 2] - low[2]) / m.unit,
-        "flush_count": (np.abs(own - its) < 0.02 * m.unit).sum(),
-        "filling": np.prod(np.minimum(filling, 1.0)),
-        "filling_most": filling.max(),
-        "filling_middle": np.sort(filling)[1],
         "handle": scene.handle is not None,
         "axis_up": np.abs(h.axes @ UP),
-        "centre_along": along @ np.abs(centre),
-        "filling_along": along @ filling,
-        "flush_along": along @ ahead,
+        "centre_along": np.abs(h.axes @ frame.axes.T) @ np.abs(centre),
     }
-
-
-def symmetry(m: MeasuredHypotheses) -> _Found:
-    """Measure what the motion carries the child onto: itself all around, by a fold of the circle, or along a line.
-
-    Distances of moved points to the surface at rest, in shares of the reach; 0 for a disc about its axle, small after a
-    third of a turn for a wheel of three spokes, small along its way for a rail.
-    """
-    h, scene = m.hypotheses, m.scene
-    points = m.child.points[m.few[:_FEW]]
-    reach = np.where(h.kinds == TURN, np.maximum(m.radii(points).max(axis=1), 0.02 * m.unit), m.unit)
-
-    turns = h.kinds == TURN
-
-    def missed(angle_deg: float, some: BoolArray) -> FloatArray:
-        amounts = np.where(turns, np.radians(angle_deg), np.where(h.kinds == SLIDE, 0.1 * m.unit, 0.0))
-        moved = m.moved(points, amounts)[some]
-        gaps = scene.cache.distances(scene.child, moved.reshape(-1, 3)).reshape(moved.shape[:2])
-        return np.asarray(gaps.mean(axis=1) / reach[some])
-
-    values = np.empty((5, len(h)))
-    values[:, turns] = [missed(angle, turns) for angle in (37.0, 180.0, 120.0, 90.0, 72.0)]
-    values[:, ~turns] = missed(0.0, ~turns)  # a slide is the same for every angle
-    odd, half, folds = values[0], values[1], values[2:].min(axis=0)
-    everything = m.child.points[:: max(1, len(m.child.points) // 400)]
-    return {
-        "itself_odd": odd,
-        "itself_half": half,
-        "itself_folds": folds,
-        "itself_folds_gain": folds / np.maximum(odd, 1e-3),
-        **_outline(m, everything),
-        "twist": _twist(m, everything, m.child.normals[:: max(1, len(m.child.points) // 400)]),
-    }
-
-
-def _outline(m: MeasuredHypotheses, points: FloatArray) -> _Found:
-    """Measure how round the outline about each line is: least over largest radius of twelve sectors, their spread."""
-    h = m.hypotheses
-    sector, apart = _sectors(m, points)
-    radius = np.zeros((len(h), 12))
-    np.maximum.at(radius, (np.arange(len(h))[:, None], sector), apart)
-    largest = np.maximum(radius.max(axis=1), _TINY)
-    turns = h.kinds == TURN
-    return {
-        "outline_least": np.where(turns, radius.min(axis=1) / largest, np.nan),
-        "outline_spread": np.where(turns, radius.std(axis=1) / largest, np.nan),
-    }
-
-
-def _sectors(m: MeasuredHypotheses, points: FloatArray) -> tuple[IntArray, FloatArray]:
-    """In which of twelve sectors about each line points (n, 3) lie, and how far from it [m], shape (h, n) each.
-
-    No sector starts where outlines of boxes and prisms have their corners.
-    """
-    first, second = across_axes(m.hypotheses.axes)
-    offset = points[None] - m.hypotheses.pivots[:, None]
-    x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
-    return ((np.arctan2(y, x) + _FIRST_SECTOR) / (2.0 * np.pi) * 12).astype(np.int64) % 12, np.hypot(x, y)
-
-
-def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> FloatArray:
-    """Return how much the surface winds about each line, as the blades of a propeller do, in [0, 1], shape (h,)."""
-    h = m.hypotheses
-    along = normals @ h.axes.T
-    around = np.einsum("hnk,nk->nh", unit(m.velocity(points)), normals)
-    wound = np.abs((along * around).mean(axis=0)) / np.maximum(np.abs(along * around).mean(axis=0), 0.02)
-    return np.where(h.kinds == TURN, wound, np.nan)
-
-
-def axle(m: MeasuredHypotheses) -> _Found:
-    """Test whether the line is an axle: how high above the floor beside its reach, what it meets on either side."""
-    h, scene = m.hypotheses, m.scene
-    radius = np.maximum(m.radii(m.child.points[m.few]).max(axis=1), 0.02 * m.unit)
-    foot = scene.centre - m.arms
-    floor = float(scene.cache.assembly.bounds[0, 2])
-    half = 0.5 * (np.abs(h.axes @ scene.frame.axes.T) @ scene.frame.extents)
-    met = []
-    for sense in (1.0, -1.0):
-        reach = (half + 0.5 * m.unit)[:, None] * h.axes * sense
-        hits = scene.cache.first_hits(scene.parent, foot, reach)
-        inside = scene.cache.inside(scene.parent, foot + 1.1 * half[:, None] * h.axes * sense)
-        met.append(np.where(inside, 0.0, np.minimum(hits, 2.0)))
-    of_contact = np.einsum("hk,hk->h", m.scene.anchor - scene.centre + np.zeros_like(h.axes), h.axes)
-    return {
-        "above_floor": np.clip((foot[:, 2] - floor) / radius, 0.0, 5.0),
-        "axle_meets": np.min(met, axis=0),
-        "axle_meets_both": np.max(met, axis=0),
-        "contact_at_end": np.abs(of_contact) / np.maximum(half, 0.02 * m.unit),
-    }
-
-
-def standing_in(m: MeasuredHypotheses) -> _Found:
-    """Where the solids stand in each other at rest: how far from the line, and how far along it."""
-    scene, h = m.scene, m.hypotheses
-    points = np.concatenate(m.shared)
-    result: _Found = {"shared_child": len(m.shared[0]) / _TRIED, "shared_parent": len(m.shared[1]) / _TRIED}
-    if len(points) < _LEAST_SHARED:
-        return result
-    radius = m.radii(points) / m.unit
-    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    half = 0.5 * (np.abs(h.axes @ scene.frame.axes.T) @ scene.frame.extents)
-    return result | {
-        "shared_radius": radius.mean(axis=1),
-        "shared_radius_most": radius.max(axis=1),
-        "shared_along": np.ptp(points @ h.axes.T, axis=0) / m.unit,
-        "shared_offset": lengths_of(m.hypotheses.arms(centre)) / m.unit,
-        "shared_at_end": np.abs(h.axes @ (centre - scene.centre)) / np.maximum(half, 0.02 * m.unit),
-    }
-
-
-def mirror(m: MeasuredHypotheses) -> _Found:
-    """Test whether a joint is as symmetric as what it moves: a drawer and its handle do not say on which side to hinge.
-
-    Planes through the child's centre along its box. Where the child, its contact and the parent around it are alike on
-    both sides, a joint that differs from its mirror image chooses a side without a reason.
-    """
-    h, scene = m.hypotheses, m.scene
-    axes = scene.frame.axes
-    touching = scene.contact.points[m.few_contact]
-    kept = np.array(
-        [
-            [_mirrored_gap(m, part, some, axis) for axis in axes]
-            for part, some in (
-                (scene.child, m.child.points[m.few]),
-                (scene.child, touching),
-                (scene.parent, m.parent.points[m.few_parent]),
-            )
-        ]
-    )
-    alike = np.exp(-kept / _ALIKE)
-    cosines = h.axes @ axes.T
-    # A direction is kept by planes that hold it or that it crosses squarely.
-    turned = 2.0 * np.abs(cosines) * np.sqrt(np.maximum(1.0 - cosines**2, 0.0))
-    across = np.minimum(2.0 * np.abs(m.arms @ axes.T) / m.unit, 1.0) * np.sqrt(np.maximum(1.0 - cosines**2, 0.0))
-    broken = np.where((h.kinds == TURN)[:, None], np.maximum(turned, across), turned)
-    both = alike.min(axis=0)
-    return {
-        "mirror_child": (broken * alike[0]).max(axis=1),
-        "mirror_pair": (broken * both).max(axis=1),
-        "mirror_contact": (broken * np.minimum(alike[0], alike[1])).max(axis=1),
-        "mirror_planes": alike[0].sum(),
-        "mirror_pair_planes": both.sum(),
-        # What is not alike on both sides should have to do with the joint.
-        "mirror_reason": (broken * (1.0 - alike[0])).max(axis=1),
-    }
-
-
-def _mirrored_gap(m: MeasuredHypotheses, part: int, points: FloatArray, normal: FloatArray) -> float:
-    """Mean distance of points (n, 3), mirrored at the child's centre, from a part, in diagonals of the child."""
-    if len(points) == 0:
-        return 1.0
-    over = (points - m.scene.centre) @ normal
-    images = points - 2.0 * over[:, None] * normal
-    before = m.scene.cache.distances(part, points)
-    return float(np.abs(m.scene.cache.distances(part, images) - before).mean() / m.unit)
-
-
-def hollow(m: MeasuredHypotheses) -> _Found:
-    """Return what of the child is around its own centre: a drawer is open above, a cap below, a ring along its line."""
-    h, scene = m.hypotheses, m.scene
-    reach = 2.0 * m.unit
-
-    def met(directions: FloatArray) -> FloatArray:
-        starts = np.broadcast_to(scene.centre, directions.shape)
-        return np.isfinite(scene.cache.first_hits(scene.child, starts, reach * directions)).astype(np.float64)
-
-    first, second = across_axes(h.axes)
-    forward = np.where(m.better == 0, 1.0, -1.0)[:, None] * h.axes
-    moves = (h.kinds != FIXED)[:, None]
-    around = [met(np.where(moves, sign * axis, UP)) for axis in (first, second) for sign in (1.0, -1.0)]
-    return {
-        "own_ahead": met(np.where(moves, forward, UP)),
-        "own_behind": met(np.where(moves, -forward, UP)),
-        "own_around": np.mean(around, axis=0),
-        "own_above": met(UP[None])[0],
-        "own_below": met(-UP[None])[0],
-    }
-
-
-def around(m: MeasuredHypotheses) -> _Found:
-    """Measure how far around the line the contact and the child in it reach: an axle is held on all sides."""
-    return {
-        "contact_around": _around(m, m.scene.contact.points[m.few_contact]),
-        "shared_around": _around(m, np.concatenate(m.shared)),
-    }
-
-
-def _around(m: MeasuredHypotheses, points: FloatArray) -> FloatArray:
-    """Share of twelve sectors about each line that hold one of the points (n, 3), shape (h,); NaN without points."""
-    h = m.hypotheses
-    if len(points) == 0:
-        return np.full(len(h), np.nan)
-    met = np.zeros((len(h), 12))
-    met[np.arange(len(h))[:, None], _sectors(m, points)[0]] = 1.0
-    return np.where(h.kinds == TURN, met.mean(axis=1), np.nan)
 
 
 def gravity(m: MeasuredHypotheses) -> _Found:
@@ -639,76 +373,6 @@ def gravity(m: MeasuredHypotheses) -> _Found:
         "along_outward": np.abs(m.hypotheses.axes @ away),
         "along_out": np.abs(m.hypotheses.axes @ out) / max(float(np.linalg.norm(out)), _TINY),
     }
-
-
-def handle(m: MeasuredHypotheses) -> _Found:
-    """Where a hand pulls: far from the line, and along what it moves."""
-    h, held = m.hypotheses, m.scene.handle
-    if held is None:
-        return {}
-    arm = lengths_of(m.hypotheses.arms(held.centre)) / m.unit
-    velocity = m.velocity(held.centre[None])[:, 0]
-    pull = np.abs(velocity @ m.scene.frame.thin_axis) / np.maximum(lengths_of(velocity), 1e-9 * m.unit)
-    frame = m.scene.frame
-    off = np.abs((held.centre - m.scene.centre) @ frame.axes.T) / np.maximum(0.5 * frame.extents, 0.02 * m.unit)
-    towards = (held.centre - m.scene.centre) / m.unit
-    length = np.maximum(lengths_of(m.arms), 1e-9 * m.unit)
-    return {
-        "handle_far": arm,
-        "handle_parallel": np.abs(h.axes @ held.direction),
-        "handle_pull": pull,
-        "handle_off": np.delete(off, frame.thin).max(),
-        "handle_opposite": np.einsum("hk,k->h", m.arms, towards) / length,
-    }
-
-
-def opening(m: MeasuredHypotheses) -> _Found:
-    """Return what the motion is for: how much more of the child, and of what it covers, can be seen from outside."""
-    scene = m.scene
-    rng = np.random.default_rng(11)
-    reach = 2.0 * scene.diagonal
-    amounts = np.where(m.better == 0, 1.0, -1.0) * m.amounts()[:, _OPEN]
-    starts, rays = _outward_rays(m.child.points[m.few], m.child.normals[m.few], 0.01 * m.unit, rng)
-    turned = m.moved(starts, amounts), m.moved(starts + rays, amounts)
-    blocked = _blocked(m, (scene.parent, *m.near_others), *turned, reach)
-    before = _blocked(m, (scene.parent, *m.near_others), starts[None], (starts + rays)[None], reach)
-    seen_before = 1.0 - float(before.mean())
-    result: _Found = {"seen": seen_before, "seen_more": (1.0 - blocked.mean(axis=1)) - seen_before}
-    nothing: _Found = {"covers": 0.0, "uncovers": 0.0}
-    covered = m.few_parent
-    if len(covered) == 0:
-        return result | nothing
-    starts, rays = _outward_rays(m.parent.points[covered], m.parent.normals[covered], 0.01 * m.unit, rng)
-    free = ~_blocked(m, (scene.parent, *m.near_others), starts[None], (starts + rays)[None], reach)[0]
-    starts, rays = starts[free], rays[free]
-    if len(starts) == 0:
-        return result | nothing
-    rest = float(_blocked(m, (scene.child,), starts[None], (starts + rays)[None], reach).mean())
-    then = _blocked(m, (scene.child,), m.moved(starts, -amounts), m.moved(starts + rays, -amounts), reach)
-    return result | {"covers": rest, "uncovers": rest - then.mean(axis=1), "open_share": free.mean()}
-
-
-def _outward_rays(
-    points: FloatArray, normals: FloatArray, lift: float, rng: np.random.Generator
-) -> tuple[FloatArray, FloatArray]:
-    """Four rays from each point into the half space that its normal shows, starts and unit directions, (4 n, 3)."""
-    directions = unit(unit(rng.normal(size=(4, *points.shape))) + 1.05 * normals)
-    starts = np.broadcast_to(points + lift * normals, directions.shape)
-    return starts.reshape(-1, 3), directions.reshape(-1, 3)
-
-
-def _blocked(
-    m: MeasuredHypotheses, parts: Sequence[int], starts: FloatArray, ends: FloatArray, reach: float
-) -> BoolArray:
-    """Test whether rays from starts through ends (c, n, 3) meet any of the parts within `reach` [m], shape (c, n)."""
-    result = np.zeros(starts.shape[:2], dtype=bool)
-    flat, steps = starts.reshape(-1, 3), (ends - starts).reshape(-1, 3) * reach
-    for part in parts:
-        left = np.flatnonzero(~result.reshape(-1))
-        if len(left):
-            hit = np.isfinite(m.scene.cache.first_hits(part, flat[left], steps[left]))
-            result.reshape(-1)[left[hit]] = True
-    return result
 
 
 def neighbours(m: MeasuredHypotheses) -> _Found:
@@ -747,11 +411,9 @@ def measure(m: MeasuredHypotheses) -> Values:
 
 def measure_groups(m: MeasuredHypotheses) -> dict[str, Values]:
     """The same by the group that measures it."""
-    return {name: {key: m.of_each(value) for key, value in group(m).items()} for name, group in GROUPS.items()}
+    return {group.__name__: {key: m.of_each(value) for key, value in group(m).items()} for group in GROUPS}
 
 
-_MEASURING: tuple[Callable[[MeasuredHypotheses], _Found], ...] = (
-    motion, contact_motion, sliding_surface, bearing, place, contact_place, child_shape, where, symmetry, axle,
-    standing_in, mirror, hollow, around, gravity, handle, opening, neighbours,
+GROUPS: tuple[Callable[[MeasuredHypotheses], _Found], ...] = (
+    motion, contact_motion, bearing, place, contact_place, child_shape, where, gravity, neighbours,
 )  # fmt: skip
-GROUPS = {group.__name__: group for group in _MEASURING}
