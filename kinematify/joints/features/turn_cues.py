@@ -185,12 +185,12 @@ def _margin_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> 
         arms = -lines.arms(scene.centre) @ frame.axes.T
         arms[:, frame.thin] = 0.0
         side = np.argmax(np.abs(arms), axis=1)
+        aside = arms[np.arange(n), side]
         low = frame.slab_lower - scene.body_box[0]
         high = scene.body_box[1] - frame.slab_upper
-        towards_high = arms[np.arange(n), side] > 0
-        near = np.where(towards_high, high[side], low[side]) / scene.diagonal
-        far = np.where(towards_high, low[side], high[side]) / scene.diagonal
-        at_edge = np.abs(arms[np.arange(n), side]) > 0.3 * frame.extents[side]
+        near = np.where(aside > 0, high[side], low[side]) / scene.diagonal
+        far = np.where(aside > 0, low[side], high[side]) / scene.diagonal
+        at_edge = np.abs(aside) > 0.3 * frame.extents[side]
         here, opposite = np.where(at_edge, near, 0.0), np.where(at_edge, far, 0.0)
     difference = np.clip(2.0 * (opposite - here), -config.panels.margin_cap, config.panels.margin_cap)
     # A handle says directly where the free side is; then the margins are only a hint.

@@ -39,16 +39,18 @@ def propose(scene: JointScene, given: Sequence[Line] = ()) -> Hypotheses:
     """
     turns = [*_turns(scene), *((line.axis, line.point, ELSEWHERE, GIVEN) for line in given)]
     slides = [*_slides(scene), *((line.axis, GIVEN) for line in given)]
-    axes = np.array([axis for axis, _, _, _ in turns])
-    pivots = np.array([pivot for _, pivot, _, _ in turns])
-    pivots = pivots + np.einsum("cd,cd->c", scene.anchor - pivots, axes)[:, None] * axes
-    count = len(slides)
+    every: list[Proposal] = [
+        (np.zeros(3), scene.anchor, ELSEWHERE, "fixed"),
+        *turns,
+        *((axis, scene.anchor, ELSEWHERE, source) for axis, source in slides),
+    ]
+    axes, pivots, places, sources = (np.array(column) for column in zip(*every, strict=True))
     return Hypotheses(
-        kinds=np.array([FIXED] + [TURN] * len(turns) + [SLIDE] * count),
-        axes=np.concatenate([np.zeros((1, 3)), axes, np.array([axis for axis, _ in slides])]),
-        pivots=np.concatenate([scene.anchor[None], pivots, np.tile(scene.anchor, (count, 1))]),
-        places=np.array([ELSEWHERE, *(place for _, _, place, _ in turns), *[ELSEWHERE] * count]),
-        sources=np.array(["fixed", *(source for _, _, _, source in turns), *(source for _, source in slides)]),
+        kinds=np.repeat([FIXED, TURN, SLIDE], [1, len(turns), len(slides)]),
+        axes=axes,
+        pivots=pivots + np.einsum("cd,cd->c", scene.anchor - pivots, axes)[:, None] * axes,
+        places=places,
+        sources=sources,
     )
 
 
