@@ -147,19 +147,20 @@ class _Voter:
     def opinion(self, line: Line) -> BearingLine:
         """Return what is known of a line, or of one next to it: motions are less exact than bearings."""
         for own in self.bearing.lines:
-            if self._near(own.line, line, 1.0):
+            if self.near(own.line, line):
                 return own
         if not all(len(side.weights) for side in self._sides):
             return scored_line(self._sides, line, self.centroid, self._diagonal, self._config)
         moved = refine_line(self._sides, line, self._tolerances, self._config)
-        chosen = moved if self._near(moved, line, self._config.twins.slack) else line
+        chosen = moved if self.near(moved, line, self._config.twins.slack) else line
         return scored_line(self._sides, chosen, self.centroid, self._diagonal, self._config)
 
     @property
     def _tolerances(self) -> FloatArray:
         return np.full(2, self._config.normal_tolerance_sine)
 
-    def _near(self, one: Line, other: Line, slack: float) -> bool:
+    def near(self, one: Line, other: Line, slack: float = 1.0) -> bool:
+        """True if two lines are one at the contact, within `slack` times what keeps lines apart."""
         cosine = np.cos(np.radians(slack * self._config.apart_angle))
         offset = one.foot(self.centroid) - other.foot(self.centroid)
         close = float(np.linalg.norm(offset)) < slack * self._config.apart * self._diagonal
@@ -179,7 +180,7 @@ def _voted(voter: _Voter, twins: Sequence[_Twin], diagonal: float, config: Beari
     ranked = best_distinct(lines, diagonal, config)
     if not ranked:
         return own
-    followed = not own.lines or not same_line(ranked[0], own.lines[0], diagonal, config)
+    followed = not own.lines or not voter.near(ranked[0].line, own.lines[0].line)
     follows = tuple(twin.pair for twin in twins) if followed else ()
     return replace(own, lines=tuple(ranked), follows=follows)
 
@@ -200,10 +201,3 @@ def _mean(mine: BearingLine, others: Sequence[BearingLine]) -> BearingLine:
     score = float(np.mean([line.score for line in everyone]))
     surfaces, rings = np.mean([(line.surfaces, line.rings) for line in everyone], axis=0).tolist()
     return replace(mine, score=score, surfaces=tuple(surfaces), rings=tuple(rings))
-
-
-def same_line(one: BearingLine, other: BearingLine, diagonal: float, config: BearingConfig) -> bool:
-    """True if two lines of one contact are one, within the tolerance at which they are kept apart."""
-    cosine = np.cos(np.radians(config.apart_angle))
-    close = float(np.linalg.norm(one.pivot - other.pivot)) < config.apart * diagonal
-    return bool(abs(float(one.axis @ other.axis)) > cosine and close)
