@@ -100,9 +100,8 @@ def broken_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
 
 
 def tree_sources() -> list[CorpusSource]:
-    """Generated objects that the edges of the tree are fitted to: families and chains."""
-    families = [CorpusSource(origin=FAMILY, name=name) for name in sorted(FAMILIES)]
-    return families + [CorpusSource(origin=CHAINS, name=CHAINS, number=n) for n in range(_CHAINS)]
+    """Generated objects that the edges of the tree and the base link are fitted to: one of every kind, and chains."""
+    return generated_sources(1, 0) + [CorpusSource(origin=CHAINS, name=CHAINS, number=n) for n in range(_CHAINS)]
 
 
 def gather_examples(
@@ -215,7 +214,7 @@ def _measure(source: CorpusSource, path: Path, seed: int) -> None:
 
 
 def _measure_tree(source: CorpusSource, path: Path, seed: int) -> None:
-    """The same of the contacts of an object."""
+    """The same of the tree of an object; the edges are fitted to no kinds of the library but families."""
     opened = opened_object(source, seed)
     if opened is None:
         write_tree_examples(path, [])
@@ -228,6 +227,7 @@ def _measure_tree(source: CorpusSource, path: Path, seed: int) -> None:
         origin=source.origin,
         source=opened.source,
         fits=opened.fits,
+        contacts=source.origin not in (DESCRIBED, PROGRAMMED),
     )
     write_tree_examples(path, [example])
 

@@ -1,52 +1,84 @@
-"""`python -m benchmarks.fit.edge_fit FOLDERS -o OUT`: the edges of the tree, fitted and judged.
+"""`python -m benchmarks.fit.edge_fit FOLDERS -o OUT`: the edges of the tree and its base link, fitted and judged.
 
-Fitted to families, chains, and those of FOLDERS that their licence allows. Each set is judged three times: fitted to,
-by a fit that has nothing of it, and by two of which each has half of it.
+Edges are fitted to families, chains, and those of FOLDERS that their licence allows; the base link also to one object
+of every kind of the library that a function draws. Each set is judged three times: fitted to, by a fit that has nothing
+of it, and by two of which each has half of it.
 """
 
 from __future__ import annotations
 
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from benchmarks.fit.corpora import GENERATED, gather_trees, real_sources, tree_sources
-from benchmarks.fit.edges import fit_edges, missed_edges, write_edge_weights
+from benchmarks.fit.edges import fit_base, fit_edges, missed_edges, write_weights, wrong_bases
 from kinematify.cli.progress import progress_reporter
 from kinematify.evaluation.result_record import table
-from kinematify.joints.choice.edges import EDGE_WEIGHTS, shipped_edge_weights
+from kinematify.joints.choice.edges import EDGE_WEIGHTS, MEASUREMENTS, shipped_weights
+from kinematify.topology.base_link import BASE_WEIGHTS, COLUMNS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from benchmarks.fit.edges import TreeExample
+    from kinematify.joints.choice.edges import LinearWeights
 
 
 @click.command()
 @click.argument("folders", nargs=-1, type=click.Path(path_type=Path))
 @click.option("-o", "--out", type=click.Path(path_type=Path), required=True)
 def command(folders: tuple[Path, ...], out: Path) -> None:
-    """Write `OUT/edges.json` and print how many edges of each set the likeliest trees lack, whatever their root."""
+    """Write `OUT/edges.json` and `OUT/base.json`, and print what they get wrong of each set.
+
+    That is how many edges the likeliest trees lack, whatever their root, and how many objects have another base link
+    where the tree is the true one.
+    """
     sources = tree_sources() + [source for folder in folders for source in real_sources(folder)]
     with progress_reporter() as progress:
         trees = gather_trees(sources, out / "trees", seed=0, workers=1, progress=progress)
+    touching = [tree for tree in trees if len(tree.pairs)]
+    for told, some, fit, wrong, file, columns in (
+        ("edges missed", touching, fit_edges, missed_edges, EDGE_WEIGHTS, MEASUREMENTS),
+        ("wrong base links", trees, fit_base, wrong_bases, BASE_WEIGHTS, COLUMNS),
+    ):
+        _fit_one(told, out / file, some, fit, wrong, columns=columns)
+
+
+def _fit_one(
+    told: str,
+    path: Path,
+    trees: Sequence[TreeExample],
+    fit: Callable[[Sequence[TreeExample], Mapping[str, Any]], LinearWeights],
+    wrong: Callable[[Sequence[TreeExample], LinearWeights], int],
+    *,
+    columns: tuple[str, ...],
+) -> None:
+    """Write the weights that a fit finds, and print its table."""
     fitted = [tree for tree in trees if tree.fits]
     facts = {
         "date": datetime.now(UTC).date().isoformat(),
         "real": sorted(f"{tree.origin}/{tree.object}" for tree in fitted if tree.origin not in GENERATED),
     }
-    weights = fit_edges(fitted, facts)
-    write_edge_weights(weights, out / EDGE_WEIGHTS)
+    weights = fit(fitted, facts)
+    write_weights(weights, columns, path)
     rows = []
     for group in dict.fromkeys((tree.origin, tree.fits) for tree in trees):
         some = [tree for tree in trees if (tree.origin, tree.fits) == group]
-        missed = [missed_edges(some, each) for each in (shipped_edge_weights(), weights)]
+        found = [wrong(some, each) for each in (shipped_weights(path.name, columns), weights)]
         if group[1]:
             others = [tree for tree in fitted if tree.origin != group[0]]
-            missed.append(missed_edges(some, fit_edges(others, {})))
+            found.append(wrong(some, fit(others, {})))
             halves = some[::2], some[1::2]
-            by_halves = [missed_edges(one, fit_edges([*others, *two], {})) for one, two in (halves, halves[::-1])]
-            missed.append(sum(by_halves))
+            by_halves = [wrong(one, fit([*others, *two], {})) for one, two in (halves, halves[::-1])]
+            found.append(sum(by_halves))
         name = f"{group[0]}, {'fitted to' if group[1] else 'never fitted to'}"
         edges = sum(len(tree.parents) - 1 for tree in some)
-        rows.append((name, f"{len(some)}", f"{edges}", *map(str, missed), *[""] * (4 - len(missed))))
-    click.echo(table(("set", "objects", "edges", "missed before", "these", "without the set", "without a half"), rows))
+        rows.append((name, f"{len(some)}", f"{edges}", *map(str, found), *[""] * (4 - len(found))))
+    titles = ("set", "objects", "edges", f"{told} before", "these", "without the set", "without a half")
+    click.echo(table(titles, rows))
 
 
 if __name__ == "__main__":

@@ -27,6 +27,8 @@ class KinematicTree:
     """Value of each reward term, each in [0, 1]."""
     likely: Mapping[tuple[int, int], float] = field(default_factory=dict)
     """Probability of its edges (a < b) among all trees of the contact graph; those that are not named are certain."""
+    standing: tuple[float, ...] = ()
+    """Probability of every part to be the base link; empty where the base link was given."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "likely", MappingProxyType(dict(self.likely)))

@@ -5,16 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.contact.graph import pair
 from kinematify.errors import InputError
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.choice.decide import estimate_joints
 from kinematify.joints.features.pins import find_pins
 from kinematify.paper.trees import PaperReward, base_by_degree
-from kinematify.topology.base_link import BaseCandidate
+from kinematify.topology.base_link import base_probabilities
 from kinematify.topology.edge_evidence import gather_evidence
 from kinematify.topology.reward import TreeReward
-from kinematify.topology.search import plausible_bases, search_trees
+from kinematify.topology.search import search_trees, spanning_edges
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -98,11 +100,14 @@ def rank_trees(
             "The configuration takes the base link as input, as the paper's Algorithm 1 does, and none was given. Name "
             "one with --base, or take a configuration that finds it, e.g. paper or default."
         )
-    if base is not None:
-        bases: tuple[BaseCandidate, ...] = (BaseCandidate(part=base, score=1.0, reason="It was given."),)
-    else:
-        bases = base_by_degree(graph)[:1] if config.base_rule == "degree" else plausible_bases(reward)
-    return search_trees(reward, bases, seed=seed, warm=warm)
+    standing: tuple[float, ...] = ()
+    if base is None and config.base_rule == "degree":
+        base = base_by_degree(graph)
+    elif base is None:
+        edges = spanning_edges(reward.quality, reward.centroids)
+        standing = tuple(base_probabilities(edges, stats, graph.alike.kind).tolist())
+        base = standing.index(max(standing))
+    return tuple(replace(tree, standing=standing) for tree in search_trees(reward, base, seed=seed, warm=warm))
 
 
 def choose_joints(
@@ -122,10 +127,14 @@ def choose_joints(
 
 
 def with_doubt_of_parents(joints: Sequence[JointEstimate], tree: KinematicTree) -> tuple[JointEstimate, ...]:
-    """Joints with less confidence where the part could as well hang on another one."""
+    """Joints with less confidence where the part could as well hang on another one, or bear what is its parent here."""
+    beyond = np.array(tree.standing or np.zeros(len(tree.parents)))
+    for parent, child in reversed(list(tree.edges())):
+        beyond[parent] += beyond[child]
     found = []
     for joint in joints:
-        right = tree.likely.get(pair(joint.parent, joint.child), 1.0)
+        # The other way round where the base link is beyond the part.
+        right = tree.likely.get(pair(joint.parent, joint.child), 1.0) * (1.0 - float(beyond[joint.child]))
         evidence = {**joint.evidence, "parent_likely": right}
         found.append(replace(joint, confidence=joint.confidence * right, evidence=evidence))
     return tuple(found)

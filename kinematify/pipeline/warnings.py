@@ -39,7 +39,7 @@ def warnings_of(
     """Everything to tell of an inference; what was already reported of the assembly comes first."""
     return (
         *assembly.warnings,
-        *_doubtful_base(assembly, trees, config.topology.base_doubt),
+        *_doubtful_base(assembly, trees[0], config.topology.base_doubt),
         *floating_parts(assembly, graph, trees[0]),
         *_compound_joints(assembly, joints, graph),
         *_followed_twins(assembly, joints, bearings),
@@ -85,16 +85,14 @@ def _parallel(one: JointEstimate, other: JointEstimate | BearingLine) -> bool:
     return bool(abs(float(one.axis @ other.axis)) > math.cos(math.radians(1.0)))
 
 
-def _doubtful_base(assembly: Assembly, trees: Sequence[KinematicTree], doubt: float) -> list[str]:
-    """Warn where another part would serve as base link nearly as well."""
-    best = trees[0]
-    rivals = [tree.root for tree in trees if tree.root != best.root and tree.reward >= best.reward - doubt]
-    if not rivals:
+def _doubtful_base(assembly: Assembly, tree: KinematicTree, doubt: float) -> list[str]:
+    """Warn where another part may be the base link."""
+    names = assembly.names
+    order = sorted(range(len(tree.standing)), key=lambda part: -tree.standing[part])
+    rivals = [f"{names[part]} ({tree.standing[part]:.0%})" for part in order if tree.standing[part] >= doubt]
+    if len(rivals) < 2:
         return []
-    others = " or ".join(assembly.names[part] for part in dict.fromkeys(rivals))
-    taken = assembly.names[best.root]
-    said = f"The base link is not certain: {taken} was chosen, {others} scored nearly as well. "
-    return [said + "Give --base to choose."]
+    return [f"The base link is not certain: {' or '.join(rivals)}. {names[tree.root]} was chosen; --base chooses."]
 
 
 def floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree) -> list[str]:

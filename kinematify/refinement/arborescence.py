@@ -49,7 +49,7 @@ def tree_with_parents(reward: TreeReward, before: KinematicTree, parents: Mappin
     found = nx.maximum_spanning_arborescence(directed, attr="weight")
     above = {child: parent for parent, child in found.edges}
     chosen = tuple(above.get(part, -1) for part in range(n))
-    terms = reward.terms(chosen, before.terms.get("base", 0.0))
-    tree = finish_tree(reward, chosen, reward.total(terms), terms)
+    tree = finish_tree(reward, chosen)
     given = {pair(parent, child) for child, parent in parents.items()}
-    return replace(tree, likely={edge: value for edge, value in tree.likely.items() if edge not in given})
+    likely = {edge: value for edge, value in tree.likely.items() if edge not in given}
+    return replace(tree, likely=likely, standing=before.standing)

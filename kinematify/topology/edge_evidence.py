@@ -27,8 +27,6 @@ class TreeEvidence:
 
     quality: Mapping[Pair, float]
     """Of every contact for the tree, in [0, 1]."""
-    axes: Mapping[Pair, FloatArray]
-    """Unit direction of the best joint of those that have one, world frame, shape (3,)."""
     carriers: Mapping[Pair, frozenset[int]]
     """Bodies far larger than both ends of an edge that bear them about one line."""
 
@@ -39,7 +37,6 @@ def gather_evidence(
     """Evidence of every contact edge; arguments as in `edges.edge_measurements`."""
     return TreeEvidence(
         quality=edge_qualities(graph, stats, bearings, pins),
-        axes={pair: bearing.lines[0].axis for pair, bearing in bearings.items() if bearing.lines},
         carriers=pins.carriers,
     )
 

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""
-_MAD_TO_SIGMA = 1.4826
-"""Median absolute deviation to standard deviation of a normal distribution."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,47 +71,6 @@ def layout_tree(parents: Sequence[int]) -> TreeLayout:
         depth[lists[node]] = depth[node] + 1
         order.extend(lists[node])
     return TreeLayout(parents=np.asarray(parents, dtype=np.int64), order=tuple(order), depth=depth)
-
-
-def structure(tree: TreeLayout, preferred_degree: int) -> float:
-    """``R_struct = 1 / (mean d^2 + mean (deg+ - k)^2)``; at most 1 for a whole number k and two or more parts."""
-    out_degree = np.bincount(tree.parents[tree.children], minlength=len(tree.parents))
-    return float(1 / (np.mean(tree.depth**2) + np.mean((out_degree - preferred_degree) ** 2)))
-
-
-def static_support(tree: TreeLayout, centroids: FloatArray, volumes: FloatArray, scale: float) -> float:
-    """``R_static = 1 / (1 + tau / sigma_tau)`` with ``tau = sum_i |(c_sub(i) - c_i) x M(i) g z-|`` over i != b.
-
-    Density and gravity scale tau and sigma_tau alike and are omitted.
-
-    Args:
-        tree: The tree.
-        centroids: ``c_i`` [m], shape (n, 3).
-        volumes: ``v_i`` [m^3], shape (n,).
-        scale: ``sigma_tau`` of `torque_scale` [m^4].
-    """
-    mass = volumes.copy()
-    moment = volumes[:, None] * centroids
-    for node in reversed(tree.order[1:]):
-        parent = tree.parents[node]
-        mass[parent] += mass[node]
-        moment[parent] += moment[node]
-    arm = moment - mass[:, None] * centroids
-    torque = np.hypot(arm[:, 0], arm[:, 1])
-    return float(1 / (1 + torque[tree.children].sum() / scale))
-
-
-def torque_scale(centroids: FloatArray, volumes: FloatArray) -> float:
-    """Robust normaliser ``sigma_tau`` [m^4] of an assembly, the same for all its trees.
-
-    The paper names only "MAD scale". Here: 1.4826 x n x the median absolute deviation of the torque of each part
-    about the common centre of mass, with a floor because few or equal parts have a deviation of zero.
-    """
-    centre = np.average(centroids, axis=0, weights=volumes)
-    arms = np.hypot(*(centroids - centre)[:, :2].T) * volumes
-    deviation = np.median(np.abs(arms - np.median(arms)))
-    floor = 0.01 * volumes.sum() * max(float(np.ptp(centroids, axis=0).max()), EPSILON)
-    return float(max(_MAD_TO_SIGMA * deviation * len(volumes), floor))
 
 
 def mean_over_edges(tree: TreeLayout, weights: FloatArray) -> float:
@@ -200,9 +157,7 @@ class TreeReward:
         self.simulated = simulated
         self.config = config
         self.centroids = np.array([item.centroid for item in stats])
-        self.volumes = np.array([item.volume for item in stats])
         self.hulls = np.array([item.hull_volume for item in stats])
-        self.scale = torque_scale(self.centroids, self.volumes)
         corners = np.array([item.bounds for item in stats])
         self.diagonal = float(np.linalg.norm(corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)))
         self.quality = self.edge_quality()
@@ -225,28 +180,17 @@ class TreeReward:
         probabilities, _ = edge_probabilities(list(self.quality), scores, self.graph.n_parts)
         return dict(zip(self.quality, probabilities.tolist(), strict=True))
 
-    def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
-        """Value of every term in [0, 1].
-
-        Args:
-            parents: Parent of every part, -1 for the root.
-            base_score: Score of the root under the base rule, in [0, 1].
-        """
+    def terms(self, parents: Sequence[int]) -> dict[str, float]:
+        """Value of every term in [0, 1] of the tree with these parents, -1 for the root."""
         tree = layout_tree(parents)
-        found = {
-            "struct": structure(tree, self.config.preferred_degree),
-            "static": static_support(tree, self.centroids, self.volumes, self.scale),
-            "contact": mean_over_edges(tree, self.edge_weights),
-            **self.own_terms(tree, base_score),
-        }
+        found = {"contact": mean_over_edges(tree, self.edge_weights), **self.own_terms(tree)}
         return found if self.simulated is None else {**found, "sim": self._survived(tree)}
 
-    def own_terms(self, tree: TreeLayout, base_score: float) -> dict[str, float]:
+    def own_terms(self, tree: TreeLayout) -> dict[str, float]:
         """The terms in which this reward differs from other ones."""
         return {
             "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.alike.kind),
             "hier": log_hierarchy(tree, self.hulls),
-            "base": base_score,
             "stack": side_by_side(tree, self.evidence.carriers),
         }
 
@@ -266,6 +210,10 @@ class TreeReward:
         if self.simulated is not None:
             weights["sim"] = self.simulated.weight
         return float(sum(weights[name] * value for name, value in terms.items()) / sum(weights.values()))
+
+    def of(self, parents: Sequence[int]) -> float:
+        """Reward of the tree with these parents, -1 for the root."""
+        return self.total(self.terms(parents))
 
     def gain(self, parent: int, child: int) -> float:
         """Immediate score of an action: the growth of the reward (times n)."""

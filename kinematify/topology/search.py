@@ -13,7 +13,6 @@ from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from kinematify.contact.graph import pair
 from kinematify.contact.tree import KinematicTree
-from kinematify.topology.base_link import rank_bases
 from kinematify.topology.edge_evidence import nearest_pair, virtual_costs
 
 if TYPE_CHECKING:
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from kinematify.config import TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.base_link import BaseCandidate
     from kinematify.topology.reward import TreeReward
 
 
@@ -330,37 +328,22 @@ def _pop_feasible(heap: list[tuple[float, Action]], state: SearchState) -> Actio
 
 
 def search_trees(
-    reward: TreeReward, bases: Sequence[BaseCandidate], *, seed: int, warm: Sequence[KinematicTree] = ()
+    reward: TreeReward, base: int, *, seed: int, warm: Sequence[KinematicTree] = ()
 ) -> tuple[KinematicTree, ...]:
     """Find the best kinematic trees of an assembly.
 
     Args:
         reward: Of its trees; its configuration has the mode and the budget.
-        bases: Base links to try.
+        base: The base link.
         seed: Seed of the search; it only breaks ties.
-        warm: Trees to begin with, beside the spanning tree of each base; the search never returns less.
+        warm: Trees to begin with, beside the spanning tree; the search never returns less.
 
     Returns:
         At most `config.keep` distinct trees, highest reward first.
     """
-    keep = reward.config.keep
-    found: dict[Parents, tuple[float, dict[str, float]]] = {}
-    for candidate in bases:
-        known = [tree.parents for tree in warm if tree.root == candidate.part]
-        seen = _trees_of_base(reward, candidate, len(bases), seed=seed, known=known)
-        best = sorted(seen, key=lambda parents: -seen[parents])[:keep]
-        found |= {parents: (seen[parents], reward.terms(parents, candidate.score)) for parents in best}
-    ranked = sorted(found, key=lambda parents: (-found[parents][0], parents))[:keep]
-    return tuple(finish_tree(reward, parents, *found[parents]) for parents in ranked)
-
-
-def plausible_bases(reward: TreeReward) -> tuple[BaseCandidate, ...]:
-    """Base links worth a search, best first: those whose score is near the best."""
-    config = reward.config
-    edges = spanning_edges(reward.quality, reward.centroids)
-    ranked = rank_bases(edges, reward.stats, reward.graph.clusters, reward.evidence)
-    near = [item for item in ranked if item.score >= ranked[0].score - config.base_margin]
-    return tuple(near[: config.max_bases])
+    seen = _judged_trees(reward, base, seed=seed, known=[tree.parents for tree in warm if tree.root == base])
+    ranked = sorted(seen, key=lambda parents: (-seen[parents], parents))
+    return tuple(finish_tree(reward, parents) for parents in ranked[: reward.config.keep])
 
 
 def open_edges(
@@ -385,44 +368,28 @@ def open_edges(
     return frozenset(tree) | {edge for _, edge, _ in kept}, frozenset(tree) - frozenset(contested)
 
 
-def _trees_of_base(
-    reward: TreeReward,
-    candidate: BaseCandidate,
-    n_bases: int,
-    *,
-    seed: int,
-    known: Sequence[Parents],
-) -> dict[Parents, float]:
-    """Reward of every complete tree seen for one base link under the configured mode."""
+def _judged_trees(reward: TreeReward, base: int, *, seed: int, known: Sequence[Parents]) -> dict[Parents, float]:
+    """Reward of every complete tree seen for a base link under the configured mode."""
     config, graph = reward.config, reward.graph
     edges = spanning_edges(reward.quality, reward.centroids)
-
-    def judge(parents: Parents) -> float:
-        return reward.total(reward.terms(parents, candidate.score))
-
-    oriented = tuple(parents_from(edges, graph.n_parts, candidate.part))
+    oriented = tuple(parents_from(edges, graph.n_parts, base))
     if config.mode == "mst":
-        return {oriented: judge(oriented)}
+        return {oriented: reward.of(oriented)}
     if config.mode == "bfs":
-        breadth_first = breadth_first_tree(graph, candidate.part, reward.centroids)
-        return {breadth_first: judge(breadth_first)}
-    problem = _search_problem(reward, edges, candidate.part, judge)
+        breadth_first = breadth_first_tree(graph, base, reward.centroids)
+        return {breadth_first: reward.of(breadth_first)}
+    problem = _search_problem(reward, edges, base)
     warm = oriented
     if reward.searches_all_contacts or problem.forbidden:
-        warm = breadth_first_tree(graph, candidate.part, reward.centroids, problem.forbidden)
+        warm = breadth_first_tree(graph, base, reward.centroids, problem.forbidden)
     search = TreeSearch(
         problem, exploration=config.exploration, normalise=config.normalise_returns, seed=seed, warm=[warm, *known]
     )
-    search.run(max(config.iterations // n_bases, 1))
+    search.run(config.iterations)
     return search.rewards
 
 
-def _search_problem(
-    reward: TreeReward,
-    edges: Sequence[Pair],
-    root: int,
-    judge: Callable[[Parents], float],
-) -> SearchProblem:
+def _search_problem(reward: TreeReward, edges: Sequence[Pair], root: int) -> SearchProblem:
     graph, config = reward.graph, reward.config
     certain: frozenset[Pair] = frozenset()
     if reward.searches_all_contacts:
@@ -439,7 +406,7 @@ def _search_problem(
         root=root,
         neighbours=neighbours,
         gains={(u, v): reward.gain(u, v) for u, items in enumerate(neighbours) for v in items},
-        reward=judge,
+        reward=reward.of,
         virtual_costs=virtual_costs(
             reward.centroids, limit=config.virtual_distance * reward.diagonal, forbidden=forbidden
         ),
@@ -453,7 +420,7 @@ def touching_pairs(graph: ContactGraph) -> Iterator[Pair]:
     return ((edge.a, edge.b) for edge in graph.edges if not edge.bridge)
 
 
-def finish_tree(reward: TreeReward, parents: Parents, total: float, terms: Mapping[str, float]) -> KinematicTree:
+def finish_tree(reward: TreeReward, parents: Parents) -> KinematicTree:
     """A tree with its reward, its terms, and what is known of its edges."""
     used = {pair(parent, child) for child, parent in enumerate(parents) if parent >= 0}
     touching = set(touching_pairs(reward.graph))
@@ -461,7 +428,7 @@ def finish_tree(reward: TreeReward, parents: Parents, total: float, terms: Mappi
         parents=parents,
         broken=frozenset(touching - used),
         virtual=frozenset(used - touching),
-        reward=total,
-        terms=terms,
+        reward=reward.of(parents),
+        terms=reward.terms(parents),
         likely={edge: reward.likely[edge] for edge in sorted(used) if edge in reward.likely},
     )

@@ -18,8 +18,8 @@ from benchmarks.fit.edges import (
     missed_edges,
     read_tree_examples,
     tree_example,
-    write_edge_weights,
     write_tree_examples,
+    write_weights,
 )
 from kinematify.config import load_config
 from kinematify.contact.build_graph import build_contact_graph
@@ -135,9 +135,9 @@ def test_a_small_fit_finds_its_own_trees_and_is_written_and_read(
     assert [item.parents for item in again] == [item.parents for item in examples]
     weights = fit_edges(again, {"seed": 0})
     assert missed_edges(again, weights) < 0.1 * sum(len(item.parents) for item in again)
-    write_edge_weights(weights, tmp_path / edges.EDGE_WEIGHTS)
+    write_weights(weights, MEASUREMENTS, tmp_path / edges.EDGE_WEIGHTS)
     monkeypatch.setattr(edges, "files", lambda _: tmp_path)
-    read = edges.shipped_edge_weights.__wrapped__()
+    read = edges.shipped_weights.__wrapped__(edges.EDGE_WEIGHTS, MEASUREMENTS)
     np.testing.assert_allclose(read.weights, weights.weights, atol=1e-6)
 
 
@@ -152,4 +152,4 @@ def test_damaged_weights_are_refused_with_the_remedy(
     (tmp_path / edges.EDGE_WEIGHTS).write_text(text, encoding="utf-8")
     monkeypatch.setattr(edges, "files", lambda _: tmp_path)
     with pytest.raises(EnvironmentFault, match=r"benchmarks\.fit"):
-        edges.shipped_edge_weights.__wrapped__()
+        edges.shipped_weights.__wrapped__(edges.EDGE_WEIGHTS, MEASUREMENTS)

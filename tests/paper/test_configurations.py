@@ -44,7 +44,7 @@ def test_an_edge_inside_a_cluster_is_cut_by_one_rule_and_kept_by_the_other() -> 
     """Two congruent links of an arm, one after the other: the second touches nothing but its twin."""
     graph = graph_of(3, {(0, 1): 0.9, (1, 2): 0.9}, clusters=[(1, 2)])
     stats = [stat((0.0, 0.0, 0.0), 4.0), stat((0.0, 0.0, 2.0)), stat((0.0, 0.0, 3.0))]
-    evidence = evidence_of(dict.fromkeys(graph.by_pair, (0.0, None)))
+    evidence = evidence_of(dict.fromkeys(graph.by_pair, 0.0))
     found = {
         config.name: rank_trees(graph, stats, evidence, config.topology, seed=0, base=0)[0].parents
         for config in (BASE, OPEN)

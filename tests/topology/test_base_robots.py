@@ -1,4 +1,4 @@
-"""The base rule on the true undirected tree of the benchmark's robots, at rest and in a random pose."""
+"""The base link of the true undirected tree of the benchmark's robots, at rest and in a random pose."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ import yourdfpy
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.alike import find_clusters
+from kinematify.contact.alike import AlikeParts, find_clusters
 from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import part_stats
 from kinematify.geometry.surface import PartSurface
-from kinematify.topology.base_link import rank_bases
+from kinematify.topology.base_link import base_probabilities
 from tests.places import BENCH
-from tests.topology.topology_objects import evidence_of
 
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")
 CONFIG = load_config()
@@ -25,20 +24,20 @@ def test_base_of_a_real_robot(name: str) -> None:
     if not (BENCH / "robots" / name).is_dir():
         pytest.skip("The benchmark models are not here; set KINEMATIFY_BENCH to their folder.")
     robot = yourdfpy.URDF.load(str(BENCH / "robots" / name / "model.urdf"))
-    clusters: tuple[tuple[int, ...], ...] = ()
+    kind = np.zeros(0, dtype=np.int64)
     for share in (0.0, 0.3):
-        names, parts, evidence = erased(robot, share)
+        names, parts, edges = erased(robot, share)
         root = names.index(rigid_group(robot, robot.base_link))
         if share == 0.0:
             assembly = Assembly(parts=tuple(parts), source=name)
             surfaces = [PartSurface(part, crease_angle=np.radians(30)) for part in parts]
-            clusters = find_clusters(assembly, surfaces, config=CONFIG.contact, seed=0)
-        ranked = rank_bases(sorted(evidence), [*map(part_stats, parts)], clusters, evidence_of(evidence))
-        assert ranked[0].part == root, [(names[item.part], item.score, item.reason) for item in ranked[:3]]
+            kind = AlikeParts(len(parts), find_clusters(assembly, surfaces, config=CONFIG.contact, seed=0)).kind
+        likely = base_probabilities(edges, [*map(part_stats, parts)], kind)
+        assert likely.argmax() == root, dict(zip(names, likely, strict=True))
 
 
-def erased(robot: yourdfpy.URDF, share: float) -> tuple[list[str], list[Part], dict]:
-    """Rigid parts in world coordinates and their joints, each joint moved by up to `share` of half its range."""
+def erased(robot: yourdfpy.URDF, share: float) -> tuple[list[str], list[Part], list[tuple[int, int]]]:
+    """Rigid parts in the world and the edges of their tree, each joint moved by up to `share` of half its range."""
     rng = np.random.default_rng(1)
     pose = {}
     for joint in robot.actuated_joints:
@@ -55,7 +54,7 @@ def erased(robot: yourdfpy.URDF, share: float) -> tuple[list[str], list[Part], d
         meshes.setdefault(rigid_group(robot, link), []).append(robot.scene.geometry[geometry].copy())
         meshes[rigid_group(robot, link)][-1].apply_transform(transform)
     names = sorted(meshes)
-    return names, [merged(name, meshes[name]) for name in names], true_joints(robot, names)
+    return names, [merged(name, meshes[name]) for name in names], true_edges(robot, names)
 
 
 def merged(name: str, meshes: list) -> Part:
@@ -72,11 +71,9 @@ def rigid_group(robot: yourdfpy.URDF, link: str) -> str:
     return link
 
 
-def true_joints(robot: yourdfpy.URDF, names: list[str]) -> dict[tuple[int, int], tuple]:
-    joints = {}
-    for joint in robot.robot.joints:
-        if joint.type != "fixed":
-            ends = pair(names.index(rigid_group(robot, joint.parent)), names.index(joint.child))
-            axis = robot.get_transform(joint.child)[:3, :3] @ joint.axis
-            joints[ends] = (1.0, axis)
-    return joints
+def true_edges(robot: yourdfpy.URDF, names: list[str]) -> list[tuple[int, int]]:
+    return [
+        pair(names.index(rigid_group(robot, joint.parent)), names.index(joint.child))
+        for joint in robot.robot.joints
+        if joint.type != "fixed"
+    ]

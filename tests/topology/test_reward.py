@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.paper.trees import PaperReward, hierarchy, symmetry
+from kinematify.paper.trees import PaperReward, hierarchy, static_support, symmetry
 from kinematify.topology import reward as terms
 from tests.topology.topology_objects import edge, evidence_of, graph_of, random_assembly, stat
 
@@ -23,7 +23,7 @@ def test_static_support_of_a_side_arm() -> None:
     centroids = np.array([[0, 0, 0], [1, 0, 0], [4, 0, 7]], dtype=float)
     volumes = np.array([5.0, 2.0, 1.0])
     # c_sub(1) = (2*1 + 1*4)/3 = 2, torque |2-1| * 3 = 3; the leaf has none.
-    assert terms.static_support(tree, centroids, volumes, scale=6.0) == pytest.approx(1 / (1 + 3 / 6))
+    assert static_support(tree, centroids, volumes, scale=6.0) == pytest.approx(1 / (1 + 3 / 6))
 
 
 def test_symmetry_of_the_paper() -> None:
@@ -65,7 +65,7 @@ def test_shafts_that_pass_each_other_hang_side_by_side(passing: bool) -> None:
     graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0})
     stats = [stat((0, 0, 0), 2.0), stat((0, 0, 1)), stat((0, 0, 2), 0.5)]
     carriers = {(1, 2): frozenset({0})} if passing else {}
-    evidence = evidence_of(dict.fromkeys(graph.by_pair, (0.9, None)), carriers)
+    evidence = evidence_of(dict.fromkeys(graph.by_pair, 0.9), carriers)
     reward = terms.TreeReward(graph, stats, evidence, CONFIG)
     chain, star = (reward.terms(parents)["stack"] for parents in ((-1, 0, 1), (-1, 0, 0)))
     assert star == 1.0

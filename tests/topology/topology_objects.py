@@ -36,15 +36,10 @@ def graph_of(
 
 
 def evidence_of(
-    edges: Mapping[tuple[int, int], tuple[float, np.ndarray | None]],
-    carriers: Mapping[tuple[int, int], frozenset[int]] | None = None,
+    quality: Mapping[tuple[int, int], float], carriers: Mapping[tuple[int, int], frozenset[int]] | None = None
 ) -> TreeEvidence:
-    """Evidence of edges by quality and direction of the best joint, of any length."""
-    return TreeEvidence(
-        quality={ends: quality for ends, (quality, _) in edges.items()},
-        axes={ends: axis / np.linalg.norm(axis) for ends, (_, axis) in edges.items() if axis is not None},
-        carriers=carriers or {},
-    )
+    """Evidence of edges by quality."""
+    return TreeEvidence(quality=quality, carriers=carriers or {})
 
 
 def stat(centroid: Sequence[float], volume: float = 1.0, flat: float = 0.0) -> PartStats:
@@ -67,31 +62,23 @@ def box(name: str, centre: Sequence[float], size: Sequence[float]) -> Part:
 
 
 class Machine:
-    """A skeleton of boxes: parts, the true parents and the axis of every joint."""
+    """A skeleton of boxes: parts and their true parents."""
 
     def __init__(self) -> None:
         self.parts: list[Part] = []
         self.parents: list[int] = []
-        self.joints: dict[tuple[int, int], tuple[float, np.ndarray | None]] = {}
 
-    def add(self, centre: Sequence[float], size: Sequence[float], parent: int = -1, axis: np.ndarray = Y) -> int:
+    def add(self, centre: Sequence[float], size: Sequence[float], parent: int = -1) -> int:
         """Add a box; the first one is the base."""
         index = len(self.parts)
         self.parts.append(box(f"p{index}", centre, size))
         self.parents.append(parent)
-        if parent >= 0:
-            self.joints[pair(parent, index)] = (1.0, axis)
         return index
 
     @property
     def edges(self) -> list[tuple[int, int]]:
         """The true undirected tree."""
-        return sorted(self.joints)
-
-    @property
-    def evidence(self) -> TreeEvidence:
-        """That of the true joints."""
-        return evidence_of(self.joints)
+        return sorted(pair(parent, child) for child, parent in enumerate(self.parents) if parent >= 0)
 
     @property
     def stats(self) -> list[PartStats]:
@@ -99,13 +86,10 @@ class Machine:
         return [part_stats(part) for part in self.parts]
 
     @property
-    def clusters(self) -> list[tuple[int, ...]]:
-        """Boxes of equal sorted sides."""
-        groups: dict[tuple[float, ...], list[int]] = {}
-        for index, part in enumerate(self.parts):
-            sides = tuple(sorted(np.round(part.bounds[1] - part.bounds[0], 6).tolist()))
-            groups.setdefault(sides, []).append(index)
-        return [tuple(group) for group in groups.values() if len(group) > 1]
+    def kind(self) -> np.ndarray:
+        """Boxes of equal sorted sides are of one kind."""
+        sides = [tuple(sorted(np.round(part.bounds[1] - part.bounds[0], 6).tolist())) for part in self.parts]
+        return np.array([sides.index(item) for item in sides])
 
 
 def random_assembly(
@@ -119,5 +103,5 @@ def random_assembly(
         pairs.add((a, b))
     graph = graph_of(n, {item: float(rng.random()) for item in sorted(pairs)}, clusters)
     stats = [stat(rng.random(3), float(rng.random()) + 0.1, float(rng.random())) for _ in range(n)]
-    evidence = {(item.a, item.b): (float(rng.random()), rng.normal(size=3)) for item in graph.edges}
+    evidence = {(item.a, item.b): float(rng.random()) for item in graph.edges}
     return graph, stats, evidence_of(evidence)

@@ -40,16 +40,16 @@ _SOFT = 2.0  # the quality is a growing function of s; half of it keeps apart wh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class EdgeWeights:
-    """A linear score of edges."""
+class LinearWeights:
+    """A linear score, of edges or of parts."""
 
     weights: FloatArray
-    """Of `MEASUREMENTS`, shape (k,)."""
+    """Of every column, shape (k,)."""
     offset: float
     provenance: Mapping[str, Any]
 
     def scores(self, measured: FloatArray) -> FloatArray:
-        """``s_e`` of measurements of shape (m, k), shape (m,)."""
+        """``s`` of measurements of shape (m, k), shape (m,)."""
         return np.asarray(measured @ self.weights + self.offset)
 
 
@@ -172,23 +172,32 @@ def _line(one: _Side, other: _Side, bounds: FloatArray) -> tuple[float, float]:
     return min(float(length), 1.0), min(float(2.0 * (aside @ aside) / (np.abs(aside) @ extents + 1e-300)), 1.0)
 
 
+def shipped_edge_weights() -> LinearWeights:
+    """The weights of edges that come with the package; raises as `shipped_weights`."""
+    return shipped_weights(EDGE_WEIGHTS, MEASUREMENTS)
+
+
 @cache
-def shipped_edge_weights() -> EdgeWeights:
-    """The weights that come with the package.
+def shipped_weights(file: str, columns: tuple[str, ...]) -> LinearWeights:
+    """Weights that come with the package.
+
+    Args:
+        file: Its name.
+        columns: What they are to be of, in this order.
 
     Raises:
-        EnvironmentFault: Their file is missing, damaged or of another version.
+        EnvironmentFault: The file is missing, damaged or of another version.
     """
     try:
-        stored = json.loads((files("kinematify.joints.choice") / EDGE_WEIGHTS).read_text(encoding="utf-8"))
+        stored = json.loads((files("kinematify.joints.choice") / file).read_text(encoding="utf-8"))
         weights = stored["weights"]
-        if tuple(weights) != MEASUREMENTS:
-            raise ValueError(f"they are of {len(weights)} measurements, not of the {len(MEASUREMENTS)} of this version")
-        return EdgeWeights(
+        if tuple(weights) != columns:
+            raise ValueError(f"they are of {len(weights)} measurements, not of the {len(columns)} of this version")
+        return LinearWeights(
             weights=np.array(list(weights.values())), offset=stored["offset"], provenance=stored["provenance"]
         )
     except (OSError, ValueError, KeyError) as error:
         raise EnvironmentFault(
-            f"The weights of the tree's edges ({EDGE_WEIGHTS}) cannot be read: {error}. Install kinematify again, or "
-            "write the weights with 'python -m benchmarks.fit.edge_fit'."
+            f"The weights of the tree ({file}) cannot be read: {error}. Install kinematify again, or write the weights "
+            "with 'python -m benchmarks.fit.edge_fit'."
         ) from error
