@@ -40,15 +40,15 @@ def command(folders: tuple[Path, ...], out: Path) -> None:
     with progress_reporter() as progress:
         trees = gather_trees(sources, out / "trees", seed=0, workers=1, progress=progress)
     touching = [tree for tree in trees if len(tree.pairs)]
-    for told, some, fit, wrong, file, columns in (
+    for counted, some, fit, wrong, file, columns in (
         ("edges missed", touching, fit_edges, missed_edges, EDGE_WEIGHTS, MEASUREMENTS),
         ("wrong base links", trees, fit_base, wrong_bases, BASE_WEIGHTS, COLUMNS),
     ):
-        _fit_one(told, out / file, some, fit, wrong, columns=columns)
+        _fit_one(counted, out / file, some, fit, wrong, columns=columns)
 
 
 def _fit_one(
-    told: str,
+    counted: str,
     path: Path,
     trees: Sequence[TreeExample],
     fit: Callable[[Sequence[TreeExample], Mapping[str, Any]], LinearWeights],
@@ -77,7 +77,7 @@ def _fit_one(
         name = f"{group[0]}, {'fitted to' if group[1] else 'never fitted to'}"
         edges = sum(len(tree.parents) - 1 for tree in some)
         rows.append((name, f"{len(some)}", f"{edges}", *map(str, found), *[""] * (4 - len(found))))
-    titles = ("set", "objects", "edges", f"{told} before", "these", "without the set", "without a half")
+    titles = ("set", "objects", "edges", f"{counted} before", "these", "without the set", "without a half")
     click.echo(table(titles, rows))
 
 
