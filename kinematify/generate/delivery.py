@@ -555,11 +555,11 @@ def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], 
         yield f"{part.count} asked for{where}, there {'is' if there == 1 else 'are'} {there}"
     if part.at_least and names and there < part.at_least and (parameter or noun.endswith(_APART)):
         yield f"several asked for, there is {there}"
-    if not names and part.count != 0:
-        looks = ["color", "material"] * noun.endswith(_HANDLES)
-        if asked := part.model_dump(exclude_defaults=True).keys() - {"count", "at_least", *looks}:
-            yield f"it is no part of its own, so that its {listed(sorted(asked))} is not as asked for"
     if not names:
+        looks = ["color", "material"] * noun.endswith(_HANDLES)
+        asked = part.model_dump(exclude_defaults=True).keys() - {"count", "at_least", *looks}
+        if asked and part.count != 0:
+            yield f"it is no part of its own, so that its {listed(sorted(asked))} is not as asked for"
         return
     yield from _size_faults(family, made, noun, names, part)
     if part.side and not _is_at(made, names, part.side):

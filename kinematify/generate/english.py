@@ -199,7 +199,7 @@ _SPELT: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"[’‘′]", "'"),
     (r"[“”″]|''", '"'),
     (
-        rf"({_NUMBER}) ?(?:ft|foot|feet|') ?({_NUMBER}) ?(?:inch(?:es)?|in\b|\")",
+        rf"({_NUMBER}) ?(?:ft|foot|feet|') ?({_NUMBER})(?: ?(?:inch(?:es)?|in\b|\")|(?= (?:wide|deep|high|tall|long)))",
         lambda found: f"{12 * float(found[1]) + float(found[2]):g} inch",
     ),
     (r"(?<=\d)'(?!\w)", " ft"),

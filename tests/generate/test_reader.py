@@ -30,6 +30,7 @@ QUARTER, EIGHTH = math.pi / 2, math.pi / 4
         ("a dresser with two small drawers in the top row and three wide drawers below, the bottom one half open",
          {"parts.drawer.count": 5, "parts.bottom drawer.open": 0.5}),
         ("a wardrobe, 6 ft 6 in tall", {"size": pytest.approx({"height": 1.9812})}),
+        ("a wardrobe, 6 ft 6 high", {"size": pytest.approx({"height": 1.9812})}),
         ("a laptop opened by 90 degrees", {"parts.hinge.open": (QUARTER, "rad")}),
         ("a safe with its door half open", {"parts.door.open": 0.5}),
         ("a paper cutter with an arm that swings up by 45 degrees", {"parts.arm.range": (0.0, EIGHTH)}),
@@ -182,6 +183,7 @@ def test_a_row_is_measured_on_the_object(line, holds):
         ("a piano stool, the seat rises from 48 to 90 cm", "from 48 to 90 cm"),
         ("a cabinet with two doors, and five black", "five black"),
         ("a cantilever sewing box with two carrying handles", "two carrying handles"),
+        ("a piano stool painted like a ladybird", "like a ladybird"),
     ],
 )
 def test_a_word_that_no_field_took_is_listed(text, unread):

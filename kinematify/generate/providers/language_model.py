@@ -169,7 +169,11 @@ class LanguageModel:
         best: tuple[dict[str, Any], BuildResult] | None = None
         problems: tuple[str, ...] = ()
         tokens = rounds = 0
-        with closing(self._service(progress)) as service:
+        service = Service(
+            name="The language model", url=self.url, key=self.key, settings=self.settings, key_name=KEY,
+            report=lambda words: progress(words, 0.0),
+        )  # fmt: skip
+        with closing(service):
             while rounds < self.settings.rounds and (self.budget is None or tokens < self.budget):
                 progress(f"round {rounds + 1} of the language model", rounds / self.settings.rounds)
                 text, used = said(self._exchange(service, job, messages, prompt, rounds))
@@ -200,12 +204,6 @@ class LanguageModel:
         path = job / ANSWER_FILE
         keep(path, best[0])
         return Written(path=path, made=best[1], rounds=rounds, tokens=tokens)
-
-    def _service(self, progress: Progress) -> Service:
-        return Service(
-            name="The language model", url=self.url, key=self.key, settings=self.settings, key_name=KEY,
-            report=lambda words: progress(words, 0.0),
-        )  # fmt: skip
 
     def _exchange(
         self, service: Service, job: Path, messages: Sequence[dict[str, Any]], prompt: Prompt, number: int
@@ -339,8 +337,7 @@ def _values(text: str) -> dict[str, Any]:
     try:
         values = json.loads(text[text.find("{") : text.rfind("}") + 1] or text)
     except (ValueError, RecursionError) as error:
-        shown = " ".join(text.split())[:_SHOWN]
-        raise InputError(f"The answer is no JSON ({error}). It began: {shown!r}.") from error
+        raise InputError(f"The answer is no JSON ({error}). It began: {text[:_SHOWN]!r}.") from error
     if not isinstance(values, dict):
         raise InputError("The answer is JSON, but no object.")
     return values
