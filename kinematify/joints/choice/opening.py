@@ -198,8 +198,7 @@ def side_columns(sides: Mapping[str, FloatArray], names: Sequence[str]) -> NDArr
     return np.concatenate([ahead, mean], axis=1)
 
 
-_FREE = -0.5  # log odds beyond which what meets nothing goes round: both kinds are then recognised about equally often
-_STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mudguard
+_STOPPED = 1.0  # log odds beyond which what meets something on its way goes round all the same: a tyre and its mudguard
 
 
 def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
@@ -216,7 +215,7 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
     scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(MeasuredHypotheses(scene, _both_ways(axis, pivot)))
     odds = float(np.sort(scorer.sums(columns_of(measured, scorer.measurements, 2))).mean()) / scorer.temperature
-    return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
+    return bool(odds > (0.0 if free.min() >= np.pi else _STOPPED))
 
 
 def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
