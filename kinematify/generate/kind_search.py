@@ -79,7 +79,8 @@ def _names() -> Mapping[str, Kind]:
 
 def kind_called(words: Sequence[str]) -> Kind | None:
     """Return the kind that is called by these words, as `key_of` writes them; None if none is."""
-    return kind_named("_".join(words)) or _names().get("".join(words))
+    found = kind_named("_".join(words))
+    return found if found and not found.like else _names().get("".join(words))
 
 
 @cache

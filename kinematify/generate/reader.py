@@ -533,8 +533,7 @@ class Sentence:
 
     def _made(self, found: Match) -> None:
         """Pass over what leads to a size or a material, and what it is for or like; a look like another is not read."""
-        is_look = found[0][0] == "Y" and self._text(found.start() - 1).endswith("ed")
-        self._take(range(*found.span()), "-!"[is_look])
+        self._take(range(*found.span()), "-!"["Y" in found[0] and self._text(found.start() - 1).endswith("ed")])
 
     def _both_sides(self, found: Match) -> None:
         self._fact(found, self.subject, each_side=True)
