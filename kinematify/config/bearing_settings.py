@@ -125,6 +125,11 @@ class BearingConfig(StageConfig):
     rail: RailConfig = section()
     """The counterpart for sliding joints, fitted to the same samples."""
 
+    def in_metres(self, diagonal: float) -> BearingConfig:
+        """The same with `fade`, `apart` and `circle_cell` in metres, for an assembly with this diagonal [m]."""
+        lengths = {name: getattr(self, name) * diagonal for name in ("fade", "apart", "circle_cell")}
+        return self.model_copy(update=lengths)
+
     def for_roughness(self, roughness: float) -> BearingConfig:
         """The same with the tolerances of parts of some roughness [deg], infinite for noisy ones."""
         share = min(max((roughness - self.rough_from) / (self.rough_to - self.rough_from), 0.0), 1.0)

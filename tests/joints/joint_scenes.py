@@ -77,13 +77,13 @@ def scene_of(known: KnownObject, child: str) -> JointScene:
 def ranked_turns(scene: JointScene) -> Ranked:
     """The proposed turns of a scene, best first."""
     proposed = propose(scene)
-    return rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), CONFIG.joints)
+    return rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)))
 
 
 def ranked_slides(scene: JointScene) -> Ranked:
     """The proposed slides of a scene, best first."""
     proposed = propose(scene)
-    return rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), CONFIG.joints)
+    return rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)))
 
 
 def clock(extra: Manifold | None = None) -> KnownObject:

@@ -57,7 +57,7 @@ def sides_of(name: str) -> tuple[Sides, float]:
     assembly = BUILDERS[name]().assembly
     surfaces = part_surfaces(assembly, config=CONFIG.surface)
     graph = build_contact_graph(assembly, surfaces, config=CONFIG.contact, seed=0)
-    return contact_sides(surfaces, graph.edges[0], diagonal=assembly.diagonal, config=BEARING), assembly.diagonal
+    return contact_sides(surfaces, graph.edges[0], config=BEARING.in_metres(assembly.diagonal)), assembly.diagonal
 
 
 def best(known: KnownObject, joint: KnownJoint, found: dict[tuple[int, int], EdgeBearing]) -> BearingLine:

@@ -53,18 +53,18 @@ def walker() -> Assembly:
 @cache
 def shared(*, lost: bool) -> dict[tuple[int, int], EdgeBearing]:
     """Bearings after the vote; with `lost`, the right lever shows nothing but a weak line of chance before it."""
-    assembly, config = walker(), CONFIG.bearing
+    assembly = walker()
+    config = CONFIG.bearing.in_metres(assembly.diagonal)
     surfaces = part_surfaces(assembly, config=CONFIG.surface)
     graph = build_contact_graph(assembly, surfaces, config=CONFIG.contact, seed=0)
-    diagonal = assembly.diagonal
     assert graph.clusters == ((1, 2),)
     edges = {pair: graph.by_pair[pair] for pair in (LEFT, RIGHT)}
-    own = {pair: fit_edge(surfaces, edge, diagonal=diagonal, config=config, seed=0) for pair, edge in edges.items()}
+    own = {pair: fit_edge(surfaces, edge, config=config, seed=0) for pair, edge in edges.items()}
     if lost:
         chance = replace(own[RIGHT].lines[0], axis=np.array([0.0, 0.0, 1.0]), score=0.01)
         own[RIGHT] = replace(own[RIGHT], lines=(chance,))
-    sides = {pair: contact_sides(surfaces, edge, diagonal=diagonal, config=config) for pair, edge in edges.items()}
-    return shared_by_twins(own, sides, surfaces, graph, diagonal=diagonal, config=config)
+    sides = {pair: contact_sides(surfaces, edge, config=config) for pair, edge in edges.items()}
+    return shared_by_twins(own, sides, surfaces, graph, config=config)
 
 
 def off_degrees(bearing: EdgeBearing, axis: np.ndarray) -> float:

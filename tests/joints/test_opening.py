@@ -9,7 +9,7 @@ from benchmarks.fit.trees import opening_recipe_key
 from kinematify.generate.procedural.solids import box
 from kinematify.joints.choice.opening import measure_sides, opening_odds, turn_sign
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, shipped_scorer
-from tests.joints.joint_scenes import CONFIG, scene_of
+from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
 
 FREE = np.array([2.0, 2.0])  # [rad], so that no stop answers
@@ -30,8 +30,8 @@ def door(request: pytest.FixtureRequest):
 
 def test_a_slab_opens_away_from_its_body(door) -> None:
     scene, axis, pivot = door
-    assert turn_sign(scene, axis, pivot, FREE, CONFIG.joints.limits) == 1.0
-    assert turn_sign(scene, -axis, pivot, FREE, CONFIG.joints.limits) == -1.0
+    assert turn_sign(scene, axis, pivot, FREE) == 1.0
+    assert turn_sign(scene, -axis, pivot, FREE) == -1.0
 
 
 def test_an_axis_and_its_opposite_get_opposite_odds(door) -> None:
@@ -44,7 +44,7 @@ def test_an_axis_and_its_opposite_get_opposite_odds(door) -> None:
 
 def test_what_stands_at_a_stop_opens_the_other_way(door) -> None:
     scene, axis, pivot = door
-    assert turn_sign(scene, axis, pivot, np.array([0.02, 3.0]), CONFIG.joints.limits) == -1.0
+    assert turn_sign(scene, axis, pivot, np.array([0.02, 3.0])) == -1.0
 
 
 def test_the_weights_are_of_the_recipe() -> None:

@@ -27,7 +27,7 @@ def wall_in_front(distance: float) -> object:
 @pytest.mark.parametrize("distance", [0.05, 0.2, 0.5])
 def test_a_slide_stops_at_the_wall(distance: float) -> None:
     scene = scene_of(wall_in_front(distance), "cube")
-    points = moving_points(scene.cache, scene.child, SWEEP)
+    points = moving_points(scene)
     axes = np.array([[1.0, 0.0, 0.0]])
     paths = slide_paths(scene.cache, points, axes, limit=1.5, config=SWEEP)
     free = paths.against((scene.parent,)).free(SWEEP.share)[0]
@@ -38,7 +38,7 @@ def test_a_slide_stops_at_the_wall(distance: float) -> None:
 def test_an_open_shell_stops_motion_as_a_solid_does() -> None:
     known = wall_in_front(0.3)
     scene = scene_of(known, "cube")
-    points = moving_points(scene.cache, scene.child, SWEEP)
+    points = moving_points(scene)
     # The wall is entered through its front face alone, so faces behind it do not matter.
     hits = scene.cache.first_hits(scene.parent, points, np.tile([0.8, 0.0, 0.0], (len(points), 1)))
     assert np.isfinite(hits).all()
@@ -48,7 +48,7 @@ def test_a_door_opens_outwards_and_not_inwards() -> None:
     known = BUILDERS["edge_door"]()
     scene = scene_of(known, known.joints[0].child)
     joint = known.joints[0]
-    points = moving_points(scene.cache, scene.child, SWEEP)
+    points = moving_points(scene)
     paths = turn_paths(scene.cache, points, joint.axis[None], joint.pivot[None], limit=np.pi / 2, config=SWEEP)
     outwards, inwards = paths.against((scene.parent,)).free(SWEEP.share)[0]
     assert outwards > np.radians(80.0)

@@ -50,23 +50,20 @@ Generators = tuple[np.random.Generator, np.random.Generator]
 """One for what is drawn of each side."""
 
 
-def contact_sides(
-    surfaces: Sequence[PartSurface], edge: ContactEdge, *, diagonal: float, config: BearingConfig
-) -> Sides:
+def contact_sides(surfaces: Sequence[PartSurface], edge: ContactEdge, *, config: BearingConfig) -> Sides:
     """Gather the evidence of both parts of a contact edge.
 
     Args:
         surfaces: Derived geometry of each part of the assembly.
         edge: A contact with samples.
-        diagonal: Of the assembly [m].
-        config: How far evidence reaches.
+        config: How far evidence reaches, lengths in metres.
 
     Returns:
         Sides of part `edge.a` and of part `edge.b`.
     """
-    scale = _contact_scale(surfaces, edge, diagonal, config)
     a, b = surfaces[edge.a], surfaces[edge.b]
-    fade = _Fade(gap=edge.gap, scale=scale)
+    # It follows the smaller part, never beyond the contact band.
+    fade = _Fade(gap=edge.gap, scale=min(config.fade, config.fade_part * min(a.part.diagonal, b.part.diagonal)))
     return _side(a, edge.samples_a, b, fade, config), _side(b, edge.samples_b, a, fade, config)
 
 
@@ -119,12 +116,6 @@ class _Fade:
 
     def weight(self, distances: FloatArray) -> FloatArray:
         return np.exp(-0.5 * (np.maximum(distances - self.gap, 0.0) / self.scale) ** 2)
-
-
-def _contact_scale(surfaces: Sequence[PartSurface], edge: ContactEdge, diagonal: float, config: BearingConfig) -> float:
-    """Distance over which evidence fades [m]: it follows the smaller part, never beyond the contact band."""
-    smaller = min(surfaces[edge.a].part.diagonal, surfaces[edge.b].part.diagonal)
-    return min(config.fade * diagonal, config.fade_part * smaller)
 
 
 def _side(

@@ -64,30 +64,29 @@ def fit_bearings(
     Returns:
         One entry per edge, keyed like `ContactGraph.by_pair`.
     """
-    work = partial(_fit_sides, surfaces, diagonal=assembly.diagonal, config=config, seed=seed)
+    scaled = config.in_metres(assembly.diagonal)
+    work = partial(_fit_sides, surfaces, config=scaled, seed=seed)
     fitted = dict(zip(graph.by_pair, each(work, graph.edges), strict=True))
     bearings = {pair: bearing for pair, (_, bearing) in fitted.items()}
     sides = {pair: found for pair, (found, _) in fitted.items()}
-    return shared_by_twins(bearings, sides, surfaces, graph, diagonal=assembly.diagonal, config=config)
+    return shared_by_twins(bearings, sides, surfaces, graph, config=scaled)
 
 
-def fit_edge(
-    surfaces: Sequence[PartSurface], edge: ContactEdge, *, diagonal: float, config: BearingConfig, seed: int
-) -> EdgeBearing:
-    """Propose, score and refine the lines of one contact edge; `diagonal` is that of the assembly [m]."""
-    return _fit_sides(surfaces, edge, diagonal=diagonal, config=config, seed=seed)[1]
+def fit_edge(surfaces: Sequence[PartSurface], edge: ContactEdge, *, config: BearingConfig, seed: int) -> EdgeBearing:
+    """Propose, score and refine the lines of one contact edge; `config` has its lengths in metres."""
+    return _fit_sides(surfaces, edge, config=config, seed=seed)[1]
 
 
 def _fit_sides(
-    surfaces: Sequence[PartSurface], edge: ContactEdge, *, diagonal: float, config: BearingConfig, seed: int
+    surfaces: Sequence[PartSurface], edge: ContactEdge, *, config: BearingConfig, seed: int
 ) -> tuple[Sides, EdgeBearing]:
     own = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
-    sides = contact_sides(surfaces, edge, diagonal=diagonal, config=own)
-    found = _fitted(surfaces, edge, sides, diagonal=diagonal, config=own, seed=seed)
-    return sides, found if own is config else _sharpened(found, sides, diagonal, config)
+    sides = contact_sides(surfaces, edge, config=own)
+    found = _fitted(surfaces, edge, sides, config=own, seed=seed)
+    return sides, found if own is config else _sharpened(found, sides, config)
 
 
-def _sharpened(found: EdgeBearing, sides: Sides, diagonal: float, config: BearingConfig) -> EdgeBearing:
+def _sharpened(found: EdgeBearing, sides: Sides, config: BearingConfig) -> EdgeBearing:
     """The best line moved to where the tolerances of clean parts put it, if it is a clear bearing to them as well.
 
     Many contacts of rough parts are exact, and single parts of clean objects are rough elsewhere.
@@ -96,7 +95,7 @@ def _sharpened(found: EdgeBearing, sides: Sides, diagonal: float, config: Bearin
         return found
     first = found.lines[0]
     moved = refine_line(sides, first.line, _tolerances(config), config)
-    sharp = scored_line(sides, moved, found.centroid, diagonal, config)
+    sharp = scored_line(sides, moved, found.centroid, config)
     near = abs(float(sharp.axis @ first.axis)) > np.cos(np.radians(config.directed_angle))
     if not near or sharp.score < config.twins.clear:
         return found
@@ -104,13 +103,7 @@ def _sharpened(found: EdgeBearing, sides: Sides, diagonal: float, config: Bearin
 
 
 def _fitted(
-    surfaces: Sequence[PartSurface],
-    edge: ContactEdge,
-    sides: Sides,
-    *,
-    diagonal: float,
-    config: BearingConfig,
-    seed: int,
+    surfaces: Sequence[PartSurface], edge: ContactEdge, sides: Sides, *, config: BearingConfig, seed: int
 ) -> EdgeBearing:
     # One generator for each part, the larger one first: what is drawn depends on the number of neither.
     draws = np.random.default_rng(seed), np.random.default_rng(seed)
@@ -118,8 +111,8 @@ def _fitted(
     pair, sides = (pair[::-1], sides[::-1]) if exchanged else (pair, sides)
     centroid = contact_centroid(sides)
     directions = _directions(surfaces, pair) if config.directed_pairs else np.empty((0, 3))
-    proposals = propose_lines(sides, centroid, directions, diagonal=diagonal, config=config, draws=draws)
-    lines = _rank(sides, proposals, centroid, directions, diagonal=diagonal, config=config)
+    proposals = propose_lines(sides, centroid, directions, config=config, draws=draws)
+    lines = _rank(sides, proposals, centroid, directions, config)
     if not lines or lines[0].score < config.turned_score:
         turned = _turned_lines(surfaces, pair, centroid, config, draws)
         lines = sorted([*lines, *turned], key=lambda line: -line.score)
@@ -136,13 +129,11 @@ def _is_larger(one: Part, other: Part) -> bool:
     return bool(one.centroid[2] > other.centroid[2]) if alike else one.area > other.area
 
 
-def score_line(
-    surfaces: Sequence[PartSurface], edge: ContactEdge, line: Line, *, diagonal: float, config: BearingConfig
-) -> BearingLine:
+def score_line(surfaces: Sequence[PartSurface], edge: ContactEdge, line: Line, config: BearingConfig) -> BearingLine:
     """Score one given line as a bearing of a contact edge, as `fit_edge` scores its own, without refining it."""
     config = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
-    sides = contact_sides(surfaces, edge, diagonal=diagonal, config=config)
-    return scored_line(sides, line, contact_centroid(sides), diagonal, config)
+    sides = contact_sides(surfaces, edge, config=config)
+    return scored_line(sides, line, contact_centroid(sides), config)
 
 
 def _directions(surfaces: Sequence[PartSurface], pair: Pair) -> FloatArray:
@@ -151,13 +142,7 @@ def _directions(surfaces: Sequence[PartSurface], pair: Pair) -> FloatArray:
 
 
 def _rank(
-    sides: Sides,
-    proposals: Lines,
-    centroid: FloatArray,
-    directions: FloatArray,
-    *,
-    diagonal: float,
-    config: BearingConfig,
+    sides: Sides, proposals: Lines, centroid: FloatArray, directions: FloatArray, config: BearingConfig
 ) -> list[BearingLine]:
     """Refine lines on few samples, keep the best distinct ones, finish them on all samples; best first."""
     few = thin(sides[0], config.refine_samples), thin(sides[1], config.refine_samples)
@@ -169,17 +154,17 @@ def _rank(
         index = np.flatnonzero(known != turning)
         refined = refine_lines(few, proposals.subset(index), rounds, config, turning=turning)
         axes[index], points[index] = refined.axes, refined.points
-    rough = scored_lines(few, Lines(axes=axes, points=points), centroid, diagonal, config)
-    starts = best_distinct(rough, diagonal, config)
+    rough = scored_lines(few, Lines(axes=axes, points=points), centroid, config)
+    starts = best_distinct(rough, config)
     free = refine_lines(sides, lines_of([start.line for start in starts]), tolerances[-2:], config)
-    final = scored_lines(sides, free, centroid, diagonal, config)
+    final = scored_lines(sides, free, centroid, config)
     along = {k: _along(start.line, directions, config.directed_angle) for k, start in enumerate(starts)}
     straight = {k: line for k, line in along.items() if line is not None}
     held = refine_lines(sides, lines_of(list(straight.values())), tolerances[-2:], config, turning=False)
-    for k, line in zip(straight, scored_lines(sides, held, centroid, diagonal, config), strict=True):
+    for k, line in zip(straight, scored_lines(sides, held, centroid, config), strict=True):
         if line.score * config.directed_bonus > final[k].score:
             final[k] = line
-    return best_distinct(final, diagonal, config)
+    return best_distinct(final, config)
 
 
 def _along(line: Line, directions: FloatArray, angle: float) -> Line | None:
@@ -199,11 +184,7 @@ def _tolerances(config: BearingConfig) -> FloatArray:
 
 
 def _turned_lines(
-    surfaces: Sequence[PartSurface],
-    pair: Pair,
-    centroid: FloatArray,
-    config: BearingConfig,
-    draws: Generators,
+    surfaces: Sequence[PartSurface], pair: Pair, centroid: FloatArray, config: BearingConfig, draws: Generators
 ) -> list[BearingLine]:
     """Axes of wheels and discs: a part that is round as a whole turns about its own axis.
 
@@ -249,13 +230,7 @@ _COARSE = 2.0  # proposals this much farther apart than what is kept: the refine
 
 
 def propose_lines(
-    sides: Sides,
-    centroid: FloatArray,
-    directions: FloatArray,
-    *,
-    diagonal: float,
-    config: BearingConfig,
-    draws: Generators,
+    sides: Sides, centroid: FloatArray, directions: FloatArray, *, config: BearingConfig, draws: Generators
 ) -> Lines:
     """Promising distinct lines: the best by area among all, and the best by circles among those through circles.
 
@@ -265,7 +240,6 @@ def propose_lines(
         sides: Evidence of both parts.
         centroid: Of the contact, world frame [m], shape (3,).
         directions: Along which lines are proposed besides, shape (k, 3).
-        diagonal: Of the assembly [m].
         config: Numbers of proposals and of what is kept.
         draws: One generator for each part; they draw its pairs and circles.
 
@@ -283,9 +257,7 @@ def propose_lines(
     area = np.sqrt(coarse[0] * coarse[1])
     votes = np.zeros(len(lines))
     n_circles = [len(found) for found in by_circles]
-    votes[: sum(n_circles)] = _circle_votes(
-        lines.subset(slice(sum(n_circles))), n_circles[0], diagonal=diagonal, config=config
-    )
+    votes[: sum(n_circles)] = _circle_votes(lines.subset(slice(sum(n_circles))), n_circles[0], config)
     chosen: list[int] = []
     lists = [(area, config.shortlist), (votes, config.shortlist_circles)]
     lists += [(area * along, config.shortlist_directed) for along in _running_along(lines, directions)]
@@ -293,7 +265,7 @@ def propose_lines(
         order = np.argsort(-merit, kind="stable")
         order = order[merit[order] > 0]
         picked = lines.subset(order).distinct(
-            count, angle=_COARSE * config.apart_angle, distance=_COARSE * config.apart * diagonal
+            count, angle=_COARSE * config.apart_angle, distance=_COARSE * config.apart
         )
         chosen += order[picked].tolist()
     return lines.subset(list(dict.fromkeys(chosen)))
@@ -347,13 +319,12 @@ def _circle_lines(side: BearingSide, count: int, rng: np.random.Generator) -> Li
     return found.subset(rng.choice(len(weights), count, p=weights / weights.sum())) if len(weights) > count else found
 
 
-def _circle_votes(lines: Lines, n_first: int, *, diagonal: float, config: BearingConfig) -> FloatArray:
+def _circle_votes(lines: Lines, n_first: int, config: BearingConfig) -> FloatArray:
     """Return how many circles of either side share each circle's line (geometric mean), shape (C,).
 
     Args:
         lines: Axes of all circles; the first `n_first` belong to the first side.
         n_first: Number of circles of the first side.
-        diagonal: Of the assembly [m].
         config: Tolerances.
     """
     axes, points = lines.axes, lines.points
@@ -361,5 +332,5 @@ def _circle_votes(lines: Lines, n_first: int, *, diagonal: float, config: Bearin
     x, y, z = (column[None] - column[:, None] for column in points.T)
     along = x * axes[:, :1] + y * axes[:, 1:2] + z * axes[:, 2:]
     apart = np.sqrt(np.maximum(x * x + y * y + z * z - along**2, 0))
-    same = aligned & (apart < config.circle_cell * diagonal)
+    same = aligned & (apart < config.circle_cell)
     return np.asarray(np.sqrt(same[:, :n_first].sum(axis=1) * same[:, n_first:].sum(axis=1)))

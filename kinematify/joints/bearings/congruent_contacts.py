@@ -38,7 +38,6 @@ def shared_by_twins(
     surfaces: Sequence[PartSurface],
     graph: ContactGraph,
     *,
-    diagonal: float,
     config: BearingConfig,
 ) -> dict[Pair, EdgeBearing]:
     """Rank the lines of every contact that has twins by what all of them show.
@@ -50,8 +49,7 @@ def shared_by_twins(
         sides: Evidence of the contacts, as it was fitted.
         surfaces: Derived geometry of each part.
         graph: Contacts and which parts are alike.
-        diagonal: Of the assembly [m].
-        config: `twins` and the tolerances.
+        config: `twins` and the tolerances, lengths in metres.
 
     Returns:
         The bearings of all contacts. Those whose best line is now another one say so in `follows`.
@@ -61,13 +59,13 @@ def shared_by_twins(
         if not _to_learn(group, bearings, surfaces, config):
             continue
         voters = {
-            pair: _Voter(bearings[pair], sides[pair], diagonal, config.for_roughness(_roughness(surfaces, pair)))
+            pair: _Voter(bearings[pair], sides[pair], config.for_roughness(_roughness(surfaces, pair)))
             for pair in group
         }
         for pair in group:
             twins = _twins_of(pair, group, voters, graph, surfaces[pair[0]].part.diagonal)
             if twins:
-                result[pair] = _voted(voters[pair], twins, diagonal, config)
+                result[pair] = _voted(voters[pair], twins, config)
     return result
 
 
@@ -137,11 +135,10 @@ def _twins_of(
 class _Voter:
     """One contact: its own lines, and what it says of those of others."""
 
-    def __init__(self, bearing: EdgeBearing, sides: Sides, diagonal: float, config: BearingConfig) -> None:
+    def __init__(self, bearing: EdgeBearing, sides: Sides, config: BearingConfig) -> None:
         self.bearing = bearing
         self.centroid = contact_centroid(sides)
         self._sides = thin(sides[0], config.refine_samples), thin(sides[1], config.refine_samples)
-        self._diagonal = diagonal
         self._config = config
 
     def opinion(self, line: Line) -> BearingLine:
@@ -150,10 +147,10 @@ class _Voter:
             if self.near(own.line, line):
                 return own
         if not all(len(side.weights) for side in self._sides):
-            return scored_line(self._sides, line, self.centroid, self._diagonal, self._config)
+            return scored_line(self._sides, line, self.centroid, self._config)
         moved = refine_line(self._sides, line, self._tolerances, self._config)
         chosen = moved if self.near(moved, line, self._config.twins.slack) else line
-        return scored_line(self._sides, chosen, self.centroid, self._diagonal, self._config)
+        return scored_line(self._sides, chosen, self.centroid, self._config)
 
     @property
     def _tolerances(self) -> FloatArray:
@@ -163,21 +160,17 @@ class _Voter:
         """True if two lines are one at the contact, within `slack` times what keeps lines apart."""
         cosine = np.cos(np.radians(slack * self._config.apart_angle))
         offset = one.foot(self.centroid) - other.foot(self.centroid)
-        close = float(np.linalg.norm(offset)) < slack * self._config.apart * self._diagonal
+        close = float(np.linalg.norm(offset)) < slack * self._config.apart
         return bool(abs(float(one.axis @ other.axis)) > cosine and close)
 
 
-def _voted(voter: _Voter, twins: Sequence[_Twin], diagonal: float, config: BearingConfig) -> EdgeBearing:
+def _voted(voter: _Voter, twins: Sequence[_Twin], config: BearingConfig) -> EdgeBearing:
     """The lines of a contact and of its twins, each with the mean of what all of them say of it."""
     own = voter.bearing
     lines = [_carried(line, twin.motion.inverse, voter.centroid) for twin in twins for line in twin.voter.bearing.lines]
-    candidates = best_distinct([*own.lines, *lines], diagonal, config.model_copy(update={"keep": 2 * config.keep}))
-    lines = []
-    for candidate in candidates:
-        mine = voter.opinion(candidate.line)
-        others = [_opinion(twin, mine.line) for twin in twins]
-        lines.append(_mean(mine, others))
-    ranked = best_distinct(lines, diagonal, config)
+    candidates = best_distinct([*own.lines, *lines], config.model_copy(update={"keep": 2 * config.keep}))
+    mine = [voter.opinion(candidate.line) for candidate in candidates]
+    ranked = best_distinct([_mean(line, [_opinion(twin, line.line) for twin in twins]) for line in mine], config)
     if not ranked:
         return own
     followed = not own.lines or not voter.near(ranked[0].line, own.lines[0].line)

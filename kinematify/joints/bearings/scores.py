@@ -12,6 +12,8 @@ from kinematify.robot.arrays import read_only
 from kinematify.robot.vectors import crossed, lengths_of, unit
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.config import BearingConfig, RailConfig
     from kinematify.joints.bearings.bearing_evidence import BearingSide, Generators, Sides
     from kinematify.robot.arrays import FloatArray
@@ -173,14 +175,13 @@ def across_axes(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
     return first, crossed(axes, first)
 
 
-def circle_support(side: BearingSide, line: Line, *, diagonal: float, config: BearingConfig) -> float:
+def circle_support(side: BearingSide, line: Line, config: BearingConfig) -> float:
     """Arc of feature edges that run around the line, in full turns near the contact, saturated to [0, 1].
 
     Args:
         side: Evidence of one part.
         line: The candidate.
-        diagonal: Of the assembly [m]; pieces of nearly equal radius and height belong to one circle.
-        config: Tolerances.
+        config: Tolerances; pieces of nearly equal radius and height belong to one circle.
     """
     if len(side.lengths) == 0:
         return 0.0
@@ -196,8 +197,7 @@ def circle_support(side: BearingSide, line: Line, *, diagonal: float, config: Be
     )
     if not around.any():
         return 0.0
-    cell = config.circle_cell * diagonal
-    keys = np.stack([np.round(radius[around] / cell), np.round(height[around] / cell)], axis=1)
+    keys = np.round(np.stack([radius[around], height[around]], axis=1) / config.circle_cell)
     _, inverse = np.unique(keys, axis=0, return_inverse=True)
     turn = side.lengths[around] / radius[around] / (2 * np.pi)
     turns = np.bincount(inverse.reshape(-1), turn)
@@ -263,29 +263,26 @@ class EdgeBearing:
         return self.lines[0].score if self.lines else 0.0
 
 
-def scored_line(sides: Sides, line: Line, centroid: FloatArray, diagonal: float, config: BearingConfig) -> BearingLine:
+def scored_line(sides: Sides, line: Line, centroid: FloatArray, config: BearingConfig) -> BearingLine:
     """Score a line as a bearing of a contact; its pivot is the foot of the contact centroid."""
-    return scored_lines(sides, lines_of([line]), centroid, diagonal, config)[0]
+    return scored_lines(sides, lines_of([line]), centroid, config)[0]
 
 
-def scored_lines(
-    sides: Sides, lines: Lines, centroid: FloatArray, diagonal: float, config: BearingConfig
-) -> list[BearingLine]:
+def scored_lines(sides: Sides, lines: Lines, centroid: FloatArray, config: BearingConfig) -> list[BearingLine]:
     """`scored_line` of each of many lines."""
     supports = [surface_support(side, lines, config).tolist() for side in sides]
-    scored = []
+    scored, floor = [], config.circle_floor
     for line, surfaces in zip(lines, zip(*supports, strict=True), strict=True):
-        rings = tuple(circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
-        floor = config.circle_floor
+        rings = tuple(circle_support(side, line, config) for side in sides)
         score = float(np.sqrt(np.prod(surfaces)) * (floor + np.sqrt(np.prod(rings))) / (floor + 1))
-        found = BearingLine(axis=line.axis, pivot=line.foot(centroid), score=score, surfaces=surfaces, rings=rings)
-        scored.append(found)
+        pivot = line.foot(centroid)
+        scored.append(BearingLine(axis=line.axis, pivot=pivot, score=score, surfaces=surfaces, rings=rings))
     return scored
 
 
-def best_distinct(lines: list[BearingLine], diagonal: float, config: BearingConfig) -> list[BearingLine]:
+def best_distinct(lines: Sequence[BearingLine], config: BearingConfig) -> list[BearingLine]:
     """The best lines, best first, without those that nearly repeat a better one."""
     ordered = sorted(lines, key=lambda line: -line.score)
     where = lines_of([line.line for line in ordered])
-    kept = where.distinct(config.keep, angle=config.apart_angle, distance=config.apart * diagonal)
+    kept = where.distinct(config.keep, angle=config.apart_angle, distance=config.apart)
     return [ordered[index] for index in kept]

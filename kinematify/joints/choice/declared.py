@@ -32,11 +32,9 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
     from kinematify.assembly.part import Assembly
     from kinematify.assembly.truth import TrueJoint
-    from kinematify.config import Config, JointsConfig
+    from kinematify.config import Config
     from kinematify.config.validation import EvidenceSettings
     from kinematify.contact.graph import Pair
     from kinematify.contact.tree import KinematicTree
@@ -45,9 +43,7 @@ if TYPE_CHECKING:
     from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.features.columns import Features
     from kinematify.joints.features.edge_scene import JointScene
-    from kinematify.robot.arrays import FloatArray
-
-    BoolArray = NDArray[np.bool_]
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
 
 _RIVALS = 8  # of each type; what cues rank lower is never the joint that is named instead
@@ -62,14 +58,15 @@ class JudgedAssembly:
         self.assembly, self.tree, self.config = assembly, tree, config
         self.surfaces = part_surfaces(assembly, config=config.surface)
         self.graph = build_contact_graph(assembly, self.surfaces, config=config.contact, seed=seed)
+        self.bearings = config.bearing.in_metres(assembly.diagonal)
         self.bearing = cache(partial(self._fitted, seed=seed))
         """Bearing lines of two parts, the lower index first; None where they do not touch."""
         self.cache = PartCache(assembly, self.graph, samples=config.joints.samples, seed=seed)
         self.scenes = TreeScenes(self.cache, tree, config.joints)
 
     def _fitted(self, pair: Pair, seed: int) -> EdgeBearing | None:
-        edge, diagonal, config = self.graph.by_pair.get(pair), self.assembly.diagonal, self.config.bearing
-        return None if edge is None else fit_edge(self.surfaces, edge, diagonal=diagonal, config=config, seed=seed)
+        edge = self.graph.by_pair.get(pair)
+        return None if edge is None else fit_edge(self.surfaces, edge, config=self.bearings, seed=seed)
 
     @cached_property
     def qualities(self) -> Mapping[Pair, float]:
@@ -103,14 +100,6 @@ class JudgedJoint:
     settings: EvidenceSettings
 
     @property
-    def _pair(self) -> Pair:
-        return pair(self.joint.parent, self.joint.child)
-
-    @property
-    def _config(self) -> JointsConfig:
-        return self.whole.config.joints
-
-    @property
     def size(self) -> float:
         """Diagonal of the child [m]."""
         return self.whole.scenes.frames[self.joint.child].diagonal
@@ -119,7 +108,7 @@ class JudgedJoint:
     def scene(self) -> JointScene:
         """The two bodies."""
         edge = self.joint.parent, self.joint.child
-        return self.whole.scenes.scene(edge, self.whole.bearing(self._pair))
+        return self.whole.scenes.scene(edge, self.whole.bearing(pair(*edge)))
 
     @cached_property
     def proposed(self) -> Hypotheses:
@@ -138,34 +127,51 @@ class JudgedJoint:
     @cached_property
     def posterior(self) -> Posterior:
         """How likely each candidate is, by geometry alone."""
-        return judge_edge(
-            self.features, self._config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0})
-        )
+        confidence = self.scene.config.confidence
+        return judge_edge(self.features, confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0}))
 
     @cached_property
     def parent(self) -> ParentEvidence:
         """How it hangs on its parent."""
-        return _parent_evidence(self.whole, self.joint)
+        joint, whole = self.joint, self.whole
+        own = (*whole.tree.subtree(joint.child), joint.parent)
+        others = [body for body in whole.graph.neighbours[joint.child] if body not in own]
+        best = max(others, key=self._quality, default=None)
+        return ParentEvidence(
+            touches=self._touches(joint.parent),
+            quality=self._quality(joint.parent) if others else 0.0,  # qualities take a tenth of the stage
+            best=best,
+            best_quality=0.0 if best is None else self._quality(best),
+        )
+
+    def _touches(self, body: int) -> bool:
+        edge = self.whole.graph.by_pair.get(pair(self.joint.child, body))
+        return edge is not None and not edge.bridge
+
+    def _quality(self, body: int) -> float:
+        return self.whole.qualities[pair(self.joint.child, body)] if self._touches(body) else 0.0
 
     @property
     def bearing(self) -> float:
         """Score of the best bearing line of the contact; 0 without one."""
-        found = self.whole.bearing(self._pair)
-        return found.lines[0].score if found and found.lines else 0.0
+        return self.scene.fitted.best_score if self.scene.fitted else 0.0
 
     @cached_property
     def own_bearing(self) -> float:
         """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
         if self.bearing <= self.settings.bearing_score:
             return 0.0
-        whole, edge = self.whole, self.whole.graph.by_pair[self._pair]
-        diagonal, config = whole.assembly.diagonal, whole.config.bearing
-        return score_line(whole.surfaces, edge, self._line, diagonal=diagonal, config=config).score
+        whole, edge = self.whole, self.whole.graph.by_pair[pair(self.joint.parent, self.joint.child)]
+        return score_line(whole.surfaces, edge, self._line, whole.bearings).score
 
     @property
     def slides(self) -> bool:
         """The joint is declared prismatic."""
         return self.joint.kind is JointType.PRISMATIC
+
+    @property
+    def _kind(self) -> int:
+        return SLIDE if self.slides else TURN
 
     @property
     def odds_against(self) -> float:
@@ -175,7 +181,7 @@ class JudgedJoint:
     @property
     def best_other(self) -> int:
         """Position of the best candidate of the other type."""
-        return self._best(TURN if self.slides else SLIDE)
+        return self._best(SLIDE + TURN - self._kind)
 
     @property
     def alone(self) -> bool:
@@ -184,9 +190,13 @@ class JudgedJoint:
 
     @cached_property
     def angle(self) -> float:
-        """Smallest angle to a direction that the geometry of the two bodies shows, whatever the type [deg]."""
+        """Smallest angle to a direction that the geometry of the two bodies shows, whatever the type [deg]; 0 of balls.
+
+        A ball has no direction at all.
+        """
         scene, every = self.scene, self.proposed
-        if _is_ball(scene):
+        radii = lengths_of(scene.samples.points - scene.samples.points.mean(axis=0))
+        if radii.std() < _BALL * radii.mean():
             return 0.0
         shown = [every.axes[~every.given & (every.kinds != FIXED)], scene.frame.axes, scene.parent_frame.axes]
         shown += [line.axis[None] for line in scene.lines]
@@ -196,14 +206,13 @@ class JudgedJoint:
     @cached_property
     def distance(self) -> float:
         """Distance to the nearest known line of nearly the same direction, fraction of the child's diagonal, or inf."""
-        every, near = self.proposed, self._near(self.proposed)
-        away = self._away(every)[near & ~every.given]
-        return float(away.min(initial=np.inf))
+        every = self.proposed
+        return float(self._away(every)[self._near(every) & ~every.given].min(initial=np.inf))
 
     def _near(self, every: Hypotheses) -> BoolArray:
         """Which candidates are of the declared type and along nearly the declared direction, shape (h,)."""
         aligned = _angles(self.joint.axis, every.axes) < self.settings.same_deg
-        return np.asarray((every.kinds == (SLIDE if self.slides else TURN)) & aligned)
+        return np.asarray((every.kinds == self._kind) & aligned)
 
     def _away(self, every: Hypotheses) -> FloatArray:
         """Distances of candidates from the declared line, fractions of the child's diagonal, shape (h,)."""
@@ -213,7 +222,7 @@ class JudgedJoint:
     @cached_property
     def best(self) -> int:
         """Position of the best candidate of the declared type."""
-        return self._best(SLIDE if self.slides else TURN)
+        return self._best(self._kind)
 
     def _best(self, kind: int) -> int:
         """Position of the best candidate of a type that the file does not state."""
@@ -224,9 +233,8 @@ class JudgedJoint:
     def deficit(self) -> float:
         """Score (`Posterior.scores`) of the best candidate of its type less that of the declared joint, at least 0."""
         every, scores = self.posterior.hypotheses, self.posterior.scores
-        of_type = every.kinds == (SLIDE if self.slides else TURN)
         same = self._near(every) & (self._away(every) < self.settings.same_distance)
-        own = float(scores[of_type & (every.given | same)].max())
+        own = float(scores[(every.kinds == self._kind) & (every.given | same)].max())
         return max(0.0, float(scores[self.best]) - own)
 
     @property
@@ -242,15 +250,15 @@ class JudgedJoint:
     @property
     def reach(self) -> float:
         """How far was swept [rad or m]."""
-        config = self._config
+        config = self.scene.config
         return config.slides.sweep * self.scene.diagonal if self.slides else float(np.radians(config.panels.sweep_deg))
 
     @cached_property
     def free(self) -> tuple[float, float]:
         """Free motion along the declared joint against the parent, towards + and - [rad or m], at most `reach`."""
         every = self.features.hypotheses
-        row = np.flatnonzero(every.given & (every.kinds == (SLIDE if self.slides else TURN)))
-        forward, backward = self.features.free_parent[row[0]] * (self.scene.diagonal if self.slides else 1.0)
+        row = np.argmax(every.given & (every.kinds == self._kind))
+        forward, backward = self.features.free_parent[row] * (self.scene.diagonal if self.slides else 1.0)
         return float(forward), float(backward)
 
 
@@ -275,35 +283,6 @@ def judge(
     """
     whole = JudgedAssembly(assembly, tree, config, seed)
     return [JudgedJoint(joint=joint, whole=whole, settings=settings) for joint in declared]
-
-
-def _parent_evidence(whole: JudgedAssembly, joint: TrueJoint) -> ParentEvidence:
-    carried = whole.tree.subtree(joint.child)
-    others = [body for body in whole.graph.neighbours[joint.child] if body not in carried and body != joint.parent]
-    compared = (*others, joint.parent) if others else ()  # qualities take a tenth of the stage
-    quality = {body: _quality(whole, joint.child, body) for body in compared}
-    best = max(others, key=lambda body: quality[body], default=None)
-    edge = whole.graph.by_pair.get(pair(joint.child, joint.parent))
-    return ParentEvidence(
-        touches=edge is not None and not edge.bridge,
-        quality=quality.get(joint.parent, 0.0),
-        best=best,
-        best_quality=0.0 if best is None else quality[best],
-    )
-
-
-def _quality(whole: JudgedAssembly, child: int, body: int) -> float:
-    edge = whole.graph.by_pair.get(pair(child, body))
-    if edge is None or edge.bridge:
-        return 0.0
-    return whole.qualities[pair(child, body)]
-
-
-def _is_ball(scene: JointScene) -> bool:
-    """The child has no direction at all."""
-    points = scene.samples.points
-    radii = lengths_of(points - points.mean(axis=0))
-    return bool(radii.std() < _BALL * radii.mean())
 
 
 def _angles(axis: FloatArray, axes: FloatArray) -> FloatArray:

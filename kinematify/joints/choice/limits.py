@@ -24,7 +24,6 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.config import JointsConfig
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray
 
@@ -110,26 +109,29 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Range
     if is_continuous(scene, axis, pivot, free):
         none, half, sign = LimitEnd(np.inf, ""), LimitEnd(np.pi, ""), clockwise_sign(scene, axis)
         return Range(kind=JointType.CONTINUOUS, sign=sign, back=none, ahead=none, free=(half, half))
+    limits = scene.config.limits
     if scene.pedal_direction.any() and abs(float(axis @ UP)) < 0.1:
-        return _pedal_range(scene, axis, pivot, ways)
+        # A pedal goes down, by no more than a lever does.
+        sign = 1.0 if float(crossed(axis, scene.centre - pivot)[2]) < 0.0 else -1.0
+        return _range(sign, AS_GIVEN, min(ways[0 if sign > 0 else 1], _usual(limits.lever_deg)), ways)
     furniture = scene.mechanism <= 0.5
     if furniture and scene.panel:
         return _panel_range(scene, axis, pivot, ways)
-    sign = turn_sign(scene, axis, pivot, free, scene.config.limits)
+    sign = turn_sign(scene, axis, pivot, free)
     forward, backward = ways if sign > 0 else ways[::-1]
-    usual, blocked = _usual(scene.config.limits.panel_deg), free.max() < np.radians(scene.config.limits.stopped_deg)
+    usual, blocked = _usual(limits.panel_deg), free.max() < np.radians(limits.stopped_deg)
     # What is blocked both ways overlaps its neighbours, or is fixed: the sweep says nothing of its range.
     back, ahead = AS_GIVEN, usual if blocked else min(forward, usual)
     if not blocked and (scene.has_bearing or not furniture):
         back, ahead = backward, _from_stop(scene, forward, backward)
     if not scene.serial:  # whose links are stopped by what is not in the mesh, too
-        back, ahead = (_usual(scene.config.limits.unmet_deg) if end.motion >= np.pi else end for end in (back, ahead))
+        back, ahead = (_usual(limits.unmet_deg) if end.motion >= np.pi else end for end in (back, ahead))
     return _range(sign, back, ahead, ways)
 
 
 def _free_turn(scene: JointScene, axis: FloatArray, pivot: FloatArray, obstacles: Sequence[int]) -> Ways:
     """Free angle towards + and -."""
-    points = moving_points(scene.cache, scene.child, scene.config.sweep)
+    points = moving_points(scene)
     paths = turn_paths(scene.cache, points, axis[None], pivot[None], limit=np.pi, config=scene.config.sweep)
     met = paths.reached(obstacles)
     return free_ways(scene, met, [paths.against((part,)) for part in met], scene.config.sweep.share)
@@ -159,38 +161,29 @@ def _range(sign: float, back: LimitEnd, ahead: LimitEnd, free: Ways) -> Range:
     return Range(kind=JointType.REVOLUTE, sign=sign, back=back, ahead=ahead, free=free if sign > 0 else free[::-1])
 
 
-# ---- pedals --------------------------------------------------------------------------------------------------------
-
-
-def _pedal_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways) -> Range:
-    """A pedal goes down, by no more than a lever does."""
-    sign = 1.0 if float(crossed(axis, scene.centre - pivot)[2]) < 0.0 else -1.0
-    return _range(sign, AS_GIVEN, min(free[0 if sign > 0 else 1], _usual(scene.config.limits.lever_deg)), free)
-
-
 # ---- panels --------------------------------------------------------------------------------------------------------
 
 
 def _panel_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Ways) -> Range:
     """A door or lid: it opens away from where it lies on its body, to a right angle beyond that place."""
-    limits, right = scene.config.limits, _usual(scene.config.limits.panel_deg)
+    limits = scene.config.limits
+    right = _usual(limits.panel_deg)
     if max(free).motion < np.radians(limits.blocked_deg):
         # Something lies on it or stands before it, which is moved away first (a lid on a seat).
         free = _free_turn(scene, axis, pivot, (scene.parent,))
     angles = np.array([way.motion for way in free])
     closing = closing_turns(scene, axis, pivot, angles)
-    sign = (
-        -float(np.sign(closing[0])) if len(closing) == 1 else turn_sign(scene, axis, pivot, angles, scene.config.limits)
-    )
+    sign = -float(np.sign(closing[0])) if len(closing) == 1 else turn_sign(scene, axis, pivot, angles)
     forward, backward = free if sign > 0 else free[::-1]
+    back, ahead = AS_GIVEN, min(forward, right)
     if len(closing) == 2:
-        return _range(sign, min(backward, right), min(forward, right), free)
-    if len(closing) == 1:
-        shut = LimitEnd(abs(closing[0]), "shut against its body")
-        return _range(sign, shut, min(forward, LimitEnd(max(right.motion - shut.motion, 0.0), USUAL)), free)
-    # Where its mesh overlaps the frame, what stops it says nothing: no door is made to stay shut.
-    blocked = max(free).motion < np.radians(limits.blocked_deg)
-    return _range(sign, AS_GIVEN, right if blocked else min(forward, right), free)
+        back = min(backward, right)
+    elif len(closing) == 1:
+        back = LimitEnd(abs(closing[0]), "shut against its body")
+        ahead = min(forward, LimitEnd(max(right.motion - back.motion, 0.0), USUAL))
+    elif max(free).motion < np.radians(limits.blocked_deg):
+        ahead = right  # where its mesh overlaps the frame, what stops it says nothing: no door is made to stay shut
+    return _range(sign, back, ahead, free)
 
 
 def closing_turns(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> tuple[float, ...]:
@@ -212,22 +205,20 @@ def closing_turns(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     now = _gap(scene, axis, pivot, 0.0)
     turns, square = _square_turns(scene, axis)
     found = sorted((_gap(scene, axis, pivot, turn) / now, turn) for turn in turns)
-    possible = [item for item in found if item[0] < limits.closer and _can_turn(*item, free, scene.config)]
+    possible = []
+    for ratio, turn in found:
+        # Where it then lies on its body all over, it met on the way an overlap of the meshes at its hinge.
+        overlap = np.radians(limits.lying_deg if ratio < limits.lying else limits.blocked_deg)
+        if ratio < limits.closer and abs(turn) < free[0 if turn > 0 else 1] + overlap:
+            possible.append((ratio, turn))
     if len(possible) > 1 and possible[1][1] * possible[0][1] < 0.0 and possible[0][0] > limits.closer * possible[1][0]:
         return possible[0][1], possible[1][1]
-    if square and not (_stands_on_top(scene, axis) and possible and possible[0][0] < limits.lying):
+    # An upright panel on a level hinge whose middle is above all of its body: no lid is shut like that.
+    top = scene.centre[2] > scene.parent_bounds[1, 2]
+    on_top = top and scene.upright and abs(float(axis @ UP)) < 0.1
+    if square and not (on_top and possible and possible[0][0] < limits.lying):
         return ()
     return tuple(turn for _, turn in possible[:1])
-
-
-def _can_turn(ratio: float, turn: float, free: FloatArray, config: JointsConfig) -> bool:
-    """True if a panel gets as far as to come nearer by a ratio.
-
-    Where it then lies on its body all over, that it met something on the way is an overlap of the meshes at its hinge.
-    """
-    limits = config.limits
-    overlap = np.radians(limits.lying_deg if ratio < limits.lying else limits.blocked_deg)
-    return bool(abs(turn) < free[0 if turn > 0 else 1] + overlap)
 
 
 def _square_turns(scene: JointScene, axis: FloatArray) -> tuple[list[float], bool]:
@@ -243,12 +234,6 @@ def _square_turns(scene: JointScene, axis: FloatArray) -> tuple[list[float], boo
     least = np.radians(scene.config.limits.square_deg)
     others = [turn for turn in turns if least < abs(turn) < np.pi - least]
     return others, len(others) < len(turns)
-
-
-def _stands_on_top(scene: JointScene, axis: FloatArray) -> bool:
-    """An upright panel on a level hinge whose middle is above all of its body: no lid is shut like that."""
-    top = float(scene.cache.assembly.parts[scene.parent].bounds[1, 2])
-    return bool(scene.upright and abs(float(axis @ UP)) < 0.1 and scene.centre[2] > top)
 
 
 def _touches_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> bool:
@@ -278,32 +263,29 @@ def _slide_range(scene: JointScene, axis: FloatArray) -> Range:
         scene: The pair.
         axis: Unit direction, shape (3,).
     """
-    points = moving_points(scene.cache, scene.child, scene.config.sweep)
+    points, limits, linked = moving_points(scene), scene.config.limits, _in_linkage(scene)
     # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
-    obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
+    obstacles = (scene.parent, *scene.others) if linked else (scene.parent,)
     paths = slide_paths(scene.cache, points, axis[None], limit=scene.diagonal, config=scene.config.sweep)
     obstacles = paths.reached(obstacles)
     swept = [paths.against((part,)) for part in obstacles]
     ways = free_ways(scene, obstacles, swept, scene.config.sweep.share)
     free = np.array([way.motion for way in ways])
     length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
-    runs = _in_linkage(scene) or _is_runner(scene, axis, free, length)
-    guided = ways
-    if runs:
-        guided = _guided(scene, axis, ways[0], length), _guided(scene, -axis, ways[1], length)
-    limited = np.array([way.motion for way in guided])
-    sign = _slide_sign(scene, axis, limited if _in_linkage(scene) else free)
+    runs = linked or _is_runner(scene, axis, free, length)
+    guided = (_guided(scene, axis, ways[0], length), _guided(scene, -axis, ways[1], length)) if runs else ways
+    sign = _slide_sign(scene, axis, np.array([way.motion for way in guided]) if linked else free)
     ways, guided = (ways, guided) if sign > 0 else (ways[::-1], guided[::-1])
     way = sign * axis
     if runs:
         ahead, back = guided
     elif (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.has_bearing and _outwards(scene, way) < 0.0):
         # It overlaps the pocket that it is in: a few of its points say nothing of the floor.
-        floor = free_ways(scene, obstacles, swept, scene.config.limits.pressed_share)[0 if sign > 0 else 1]
+        floor = free_ways(scene, obstacles, swept, limits.pressed_share)[0 if sign > 0 else 1]
         ahead, back = min(floor, _press(scene, way, length)), AS_GIVEN
     else:
         ahead, back = _ends(scene, way, ways, length)
-    ahead = max(ahead, LimitEnd(scene.config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
+    ahead = max(ahead, LimitEnd(limits.least_slide * scene.diagonal, "the least travel that is kept"))
     return Range(kind=JointType.PRISMATIC, sign=sign, back=back, ahead=ahead, free=ways)
 
 
@@ -341,15 +323,13 @@ def _standing_out(scene: JointScene, direction: FloatArray) -> float:
     """
     if float(direction @ UP) > 0.9:
         return 0.0
-    own = scene.samples.points @ direction
     body = scene.parent_samples.points @ direction
-    return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
+    return max(float(np.quantile(scene.samples.points @ direction, 0.98) - body.max()), 0.0)
 
 
 def _press(scene: JointScene, direction: FloatArray, length: float) -> LimitEnd:
     """Travel of a button pressed along a direction that nothing stops: what stands out of its surroundings."""
-    own = scene.samples.points
-    body = scene.parent_samples.points
+    own, body = scene.samples.points, scene.parent_samples.points
     centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
     wide = 2.0 * float(lengths_of(crossed(own - centre, direction)).max())
     around = body[lengths_of(crossed(body - centre, direction)) < wide]
@@ -367,16 +347,16 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray) -> float:
     What sits in a bore and has room behind it is pressed in, as a button that stands out before its pocket; a stopper
     or cap has none, for it is in as far as it goes.
     """
-    outwards = _outwards(scene, axis)
+    limits, outwards, linked = scene.config.limits, _outwards(scene, axis), _in_linkage(scene)
     longer = 1.0 if free[0] > free[1] else -1.0
-    one_way = abs(float(free[0] - free[1])) > scene.config.limits.one_way * scene.diagonal
-    if scene.smallness >= 1.0 and not (scene.has_bearing or _in_linkage(scene)) and one_way:
+    one_way = abs(float(free[0] - free[1])) > limits.one_way * scene.diagonal
+    if scene.smallness >= 1.0 and not (scene.has_bearing or linked) and one_way:
         return -longer  # there is a floor below a button and nothing before it; round ones and collars are split below
-    if scene.has_bearing and not _in_linkage(scene) and not _is_sheath(scene, axis):
+    if scene.has_bearing and not linked and not _is_sheath(scene, axis):
         clearance = slide_clearance(scene, outwards * axis)
-        if clearance is not None and scene.config.limits.room * scene.frame.diagonal < clearance[1] < np.inf:
+        if clearance is not None and limits.room * scene.frame.diagonal < clearance[1] < np.inf:
             return -outwards
-    if scene.smallness > 0.5 and not _in_linkage(scene) and not _is_small_lid(scene):
+    if scene.smallness > 0.5 and not linked and not _is_small_lid(scene):
         return -outwards
     return longer if one_way else outwards
 
@@ -421,13 +401,12 @@ def guided_travel(scene: JointScene, direction: FloatArray) -> float | None:
         scene: The pair.
         direction: Unit direction of travel, shape (3,).
     """
-    travels = np.linspace(0.0, scene.diagonal, scene.config.guide.steps + 1)
+    guide, drawer = scene.config.guide, scene.config.limits.drawer
+    travels = np.linspace(0.0, scene.diagonal, guide.steps + 1)
     shares = guided_share(scene, direction, travels)
-    if shares is None or shares[0] < scene.config.guide.kept:
+    if shares is None or shares[0] < guide.kept:
         return None
-    leaves = _first_below(travels, shares, scene.config.guide.kept)
-    gone = _first_below(travels, shares, scene.config.guide.gone)
-    return max(leaves, scene.config.limits.drawer * gone)
+    return max(_first_below(travels, shares, guide.kept), drawer * _first_below(travels, shares, guide.gone))
 
 
 def guided_share(scene: JointScene, direction: FloatArray, travels: FloatArray) -> FloatArray | None:
@@ -441,11 +420,11 @@ def guided_share(scene: JointScene, direction: FloatArray, travels: FloatArray) 
     Returns:
         The larger of the shares of both parts in [0, 1], shape (n,); None where the contact is not such.
     """
-    edge = scene.cache.graph.by_pair.get(pair(scene.parent, scene.child))
+    edge, guide = scene.cache.graph.by_pair.get(pair(scene.parent, scene.child)), scene.config.guide
     if edge is None:
         return None
     # Of small parts, the band of a contact is as wide as they are long.
-    reach = edge.gap + min(scene.config.contact_band * scene.diagonal, scene.config.guide.band * scene.frame.diagonal)
+    reach = edge.gap + min(scene.config.contact_band * scene.diagonal, guide.band * scene.frame.diagonal)
     contact = scene.contact
     sides = (
         (scene.parent, contact.points, contact.normals, direction),
@@ -453,11 +432,11 @@ def guided_share(scene: JointScene, direction: FloatArray, travels: FloatArray) 
     )
     shares = []
     for other, points, normals, motion in sides:
-        along = points[np.abs(normals @ direction) < np.sin(np.radians(scene.config.guide.along_deg))]
+        along = points[np.abs(normals @ direction) < np.sin(np.radians(guide.along_deg))]
         guiding = along[scene.cache.distances(other, along) <= reach] if len(along) else along
-        if len(guiding) < scene.config.guide.least_samples:
+        if len(guiding) < guide.least_samples:
             return None
-        thinned = guiding[:: max(1, len(guiding) // scene.config.guide.samples)]
+        thinned = guiding[:: max(1, len(guiding) // guide.samples)]
         moved = (thinned[None] + travels[:, None, None] * motion).reshape(-1, 3)
         shares.append((scene.cache.distances(other, moved) <= reach).reshape(len(travels), -1).mean(axis=1))
     return np.asarray(np.maximum(*shares))

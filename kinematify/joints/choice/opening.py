@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.config import LimitsConfig
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.measurements import Values
@@ -150,15 +149,14 @@ def clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
 
 def _open_side(scene: JointScene, axis: FloatArray) -> float:
     """Sign of the way along an axis on which the parent is not in front of the child; 0 where it is on both or none."""
-    steps = scene.cache.diagonal * np.array([axis, -axis])
-    blocked = np.isfinite(scene.cache.first_hits(scene.parent, np.tile(scene.centre, (2, 1)), steps))
-    return float(blocked[1]) - float(blocked[0])
+    ahead, behind = scene.walls(np.array([axis, -axis]))
+    return float(behind) - float(ahead)
 
 
 _UNDECIDED = 0.2  # log odds; noise of the samples decides below
 
 
-def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: LimitsConfig) -> float:
+def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
     """+1 where a turn opens about the axis as it is, -1 where it must be reversed.
 
     What stands at a stop opens the other way. Links in series, what turns on a bearing and is not stopped either way,
@@ -169,9 +167,9 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
         axis: Unit direction, shape (3,).
         pivot: Point on the axis [m], shape (3,).
         free: Free angle towards + and - [rad], shape (2,).
-        config: From where on a joint stands at its stop.
     """
-    stopped, unstopped = np.radians((config.stopped_deg, config.unstopped_deg))
+    limits = scene.config.limits
+    stopped, unstopped = np.radians((limits.stopped_deg, limits.unstopped_deg))
     if free.min() < stopped and free.max() > unstopped:
         return 1.0 if free[0] > free[1] else -1.0
     either = scene.serial or (scene.has_bearing and free.min() > unstopped)

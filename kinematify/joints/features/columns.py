@@ -68,54 +68,44 @@ def features_of(scene: JointScene, proposed: Hypotheses, rivals: int | None = No
         proposed: Its joints, of which those that were given have no say in the type.
         rivals: So many of each type, which cues rank first, are measured beside those that were given; all if absent.
     """
-    turns = rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), scene.config).first(rivals)
-    slides = rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), scene.config).first(rivals)
-    hypotheses = joined(proposed.at(np.array([0])), turns.lines, slides.lines)
+    turns = rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN))).first(rivals)
+    slides = rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE))).first(rivals)
+    m = MeasuredHypotheses(scene, joined(proposed.at(np.array([0])), turns.lines, slides.lines))
     return Features(
         scene=scene,
-        hypotheses=hypotheses,
-        groups={
-            **measure_groups(MeasuredHypotheses(scene, hypotheses)),
-            CUES: _cues(scene, turns, slides),
-            VERDICTS: _verdicts(scene, turns, slides),
-        },
+        hypotheses=m.hypotheses,
+        groups={**measure_groups(m), CUES: _cues(m, turns, slides), VERDICTS: _verdicts(m, turns, slides)},
         free_parent=np.concatenate([np.zeros((1, 2)), turns.free_parent, slides.free_parent]),
     )
 
 
-def _cues(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
+def _cues(m: MeasuredHypotheses, turns: Ranked, slides: Ranked) -> Values:
     """The cues of turns and of slides before any weight, as measurements like others; NaN where none applies, (h,)."""
-    n, m = len(turns.scores), len(slides.scores)
-
-    def of_turns(value: FloatArray) -> FloatArray:
-        return np.concatenate([[np.nan], value, np.full(m, np.nan)])
-
-    def of_slides(value: FloatArray) -> FloatArray:
-        return np.concatenate([np.full(1 + n, np.nan), value])
-
+    scene, others = m.scene, len(slides.scores)
     facts = {"has_bearing": scene.has_bearing, "mechanism": scene.mechanism, "smallness": scene.smallness}
     return {
-        "turn_room": of_turns(turns.free.max(axis=1)),
-        "turn_room_parent": of_turns(turns.free_parent.max(axis=1)),
-        "slide_room": of_slides(slides.free.max(axis=1)),
-        "slide_room_parent": of_slides(slides.free_parent.max(axis=1)),
-        **{f"turn_{name}": of_turns(value) for name, value in turns.cues.items()},
-        **{f"slide_{name}": of_slides(value) for name, value in slides.cues.items()},
-        **{name: np.full(1 + n + m, float(value)) for name, value in facts.items()},
+        **{
+            f"{kind}_{name}": np.pad(value, around, constant_values=np.nan)
+            for kind, found, around in (("turn", turns, (1, others)), ("slide", slides, (1 + len(turns.scores), 0)))
+            for name, value in {
+                "room": found.free.max(axis=1),
+                "room_parent": found.free_parent.max(axis=1),
+                **found.cues,
+            }.items()
+        },
+        **{name: m.of_each(value) for name, value in facts.items()},
     }
 
 
-def _verdicts(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
+def _verdicts(m: MeasuredHypotheses, turns: Ranked, slides: Ranked) -> Values:
     """Return what the weighted sums of cues say of each hypothesis, and the cues of the type, (h,) each.
 
     They were written while objects were looked at. Half of what is fitted does not see them.
     """
-    n, m, proposed = len(turns.scores), len(slides.scores), (turns.proposed, slides.proposed)
-    cues = type_cues(scene, *proposed, scene.config)
+    cues = type_cues(m.scene, turns.proposed, slides.proposed)
     odds = float(np.clip(type_odds(cues), -_ODDS, _ODDS))
-    facts = {f"{TYPE}{name}": value for name, value in cues.items()}
     return {
         "rules_score": np.concatenate([[np.nan], *(found.scores - found.scores.max() for found in (turns, slides))]),
-        "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),
-        **{name: np.full(1 + n + m, value) for name, value in facts.items()},
+        "rules_odds": np.repeat([0.0, -odds, odds], [1, len(turns.scores), len(slides.scores)]),
+        **{f"{TYPE}{name}": m.of_each(value) for name, value in cues.items()},
     }

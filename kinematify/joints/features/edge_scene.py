@@ -14,9 +14,7 @@ from kinematify.joints.features.journal import held_journal
 from kinematify.robot.vectors import crossed, unit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from kinematify.config import FrontCuesConfig, JointsConfig
+    from kinematify.config import JointsConfig
     from kinematify.contact.tree import KinematicTree
     from kinematify.geometry.sampling import SurfaceSamples
     from kinematify.joints.bearings.scores import EdgeBearing, Rail
@@ -24,52 +22,6 @@ if TYPE_CHECKING:
     from kinematify.joints.features.journal import Journal
     from kinematify.joints.features.workspace import ContactView, PartCache
     from kinematify.robot.arrays import BoolArray, FloatArray
-
-
-def foot_side(part: BoxFrame, body: FloatArray, config: FrontCuesConfig) -> FloatArray:
-    """Unit level direction from the middle of a body to a small part at one side of its foot, else zero, shape (3,).
-
-    A pedal is where the user's foot is, in front. A bin on two wheels is tipped back onto them, so they are behind.
-
-    Args:
-        part: Box frame of the part.
-        body: Bounds of the body in the world frame [m], shape (2, 3).
-        config: What counts as small, low and on one side.
-    """
-    extents = body[1] - body[0]
-    middle = 0.5 * (part.lower + part.upper) @ part.axes
-    offset = (middle - body.mean(axis=0)) * (1.0, 1.0, 0.0)
-    distance = float(np.linalg.norm(offset))
-    small = part.diagonal < config.small * float(np.linalg.norm(extents))
-    low = middle[2] - body[0, 2] < config.low * extents[2]
-    aside = distance > config.aside * 0.5 * float(extents[:2].min())
-    return np.asarray(offset / distance) if small and low and aside else np.zeros(3)
-
-
-def front_of(
-    body: FloatArray, frames: Sequence[BoxFrame], rolling: Sequence[bool], config: FrontCuesConfig
-) -> FloatArray:
-    """The level direction in which the front of a body looks, zero where nothing at its foot says so, shape (3,).
-
-    Args:
-        body: Bounds of the body in the world frame [m], shape (2, 3).
-        frames: Box frames of the parts that it carries.
-        rolling: Which of them are wheels.
-        config: What counts as small, low and on one side.
-    """
-    front = np.zeros(3)
-    for frame, rolls in zip(frames, rolling, strict=True):
-        if rolls or is_level_plate(frame):
-            front += foot_side(frame, body, config) * (-1.0 if rolls else 1.0)
-    length = float(np.linalg.norm(front))
-    # Feet or castors all around cancel out.
-    return front / length if length > config.agreeing else np.zeros(3)
-
-
-def is_level_plate(frame: BoxFrame) -> bool:
-    """True if a part is thin upwards, as what is trodden on."""
-    sides = np.sort(frame.extents)
-    return bool(abs(float(frame.thin_axis @ UP)) > np.cos(np.radians(30.0)) and sides[0] < 0.5 * sides[1])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,8 +50,8 @@ class TreeScenes:
         body = body_axes(root.normals, root.areas)
         self.frames: dict[int, BoxFrame] = {}
         """Box frame of every part; that of the root prefers the upright frame of the body, others their parent's."""
-        for part, above in [(tree.root, -1), *((child, parent) for parent, child in tree.edges())]:
-            preferred = [body] if above < 0 else [self.frames[above].axes, body]
+        for above, part in [(-1, tree.root), *tree.edges()]:
+            preferred = [self.frames[above].axes, body] if above in self.frames else [body]
             self.frames[part] = box_frame(cache.corners(part), cache.samples(part), preferred, config.frames)
 
     def scene(self, edge: tuple[int, int], bearing: EdgeBearing | None) -> JointScene:
@@ -112,6 +64,21 @@ class TreeScenes:
         level = abs(float(frame.thin_axis @ UP)) < 0.1
         lowest = assembly.parts[part].bounds[0, 2] - assembly.bounds[0, 2]
         return bool(level and lowest < 0.01 * self.cache.diagonal and self.disc(part) > 0.5)
+
+    def foot_side(self, part: int, body: int) -> FloatArray:
+        """Unit level direction from the middle of a body to a small part at a side of its foot, else zero, shape (3,).
+
+        A pedal is where the user's foot is, in front. A bin on two wheels is tipped back onto them, so they are behind.
+        """
+        config, frame, bounds = self.config.front_cues, self.frames[part], self.cache.assembly.parts[body].bounds
+        extents = bounds[1] - bounds[0]
+        middle = 0.5 * (frame.lower + frame.upper) @ frame.axes
+        offset = (middle - bounds.mean(axis=0)) * (1.0, 1.0, 0.0)
+        distance = float(np.linalg.norm(offset))
+        small = frame.diagonal < config.small * float(np.linalg.norm(extents))
+        low = middle[2] - bounds[0, 2] < config.low * extents[2]
+        aside = distance > config.aside * 0.5 * float(extents[:2].min())
+        return np.asarray(offset / distance) if small and low and aside else np.zeros(3)
 
     def disc(self, part: int) -> float:
         """Return how round a part is seen along its thin direction, 0 for a square, 1 for a disc."""
@@ -170,6 +137,16 @@ class JointScene:
     def diagonal(self) -> float:
         """Diagonal of the assembly [m]."""
         return self.cache.diagonal
+
+    @property
+    def bounds(self) -> FloatArray:
+        """Lower and upper corner of the child, world frame [m], shape (2, 3)."""
+        return self.cache.assembly.parts[self.child].bounds
+
+    @property
+    def parent_bounds(self) -> FloatArray:
+        """Lower and upper corner of the parent, world frame [m], shape (2, 3)."""
+        return self.cache.assembly.parts[self.parent].bounds
 
     @property
     def centre(self) -> FloatArray:
@@ -268,13 +245,9 @@ class JointScene:
         lines, journal = () if self.fitted is None else self.fitted.lines, self.journal
         if journal is None:
             return lines
-        score, both = max((line.score for line in lines), default=0.0), (journal.coverage, journal.coverage)
-        return (
-            BearingLine(
-                axis=journal.axis, pivot=journal.pivot, score=score + journal.coverage, surfaces=both, rings=both
-            ),
-            *lines,
-        )
+        both = journal.coverage, journal.coverage
+        score = max((line.score for line in lines), default=0.0) + journal.coverage
+        return BearingLine(axis=journal.axis, pivot=journal.pivot, score=score, surfaces=both, rings=both), *lines
 
     @cached_property
     def journal(self) -> Journal | None:
@@ -290,7 +263,20 @@ class JointScene:
     @cached_property
     def has_bearing(self) -> bool:
         """The best line of the bearing passes the gate."""
-        return self.journal is not None or passes_gate(self.lines, self.contact, self.config)
+        return self.journal is not None or self._passes_gate
+
+    @property
+    def _passes_gate(self) -> bool:
+        """Either round surface and circles on both parts, or so much round surface that it needs no circles."""
+        if not self.lines:
+            return False
+        line, contact, gate = self.lines[0], self.contact, self.config.gate
+        if line.surface * line.circles > gate.product:
+            return True
+        m = len(contact.parent_points)
+        child = located_support(contact.points, contact.normals, contact.weights, line)
+        parent = located_support(contact.parent_points, contact.parent_normals, np.full(m, 1.0 / max(m, 1)), line)
+        return bool(np.sqrt(max(child * parent, 0.0)) > gate.located)
 
     @property
     def rail(self) -> Rail | None:
@@ -340,7 +326,7 @@ class JointScene:
     @property
     def on_top(self) -> bool:
         """The child lies above most of its parent."""
-        low, high = self.cache.assembly.parts[self.parent].bounds[:, 2]
+        low, high = self.parent_bounds[:, 2]
         return bool(self.centre[2] > low + 0.75 * (high - low))
 
     @property
@@ -348,11 +334,15 @@ class JointScene:
         """The parent is itself moved by a joint."""
         return self.parent != self.whole.tree.root
 
+    def walls(self, ways: FloatArray) -> BoolArray:
+        """Whether the parent is in the way from the child's centre along unit directions (n, 3), shape (n,)."""
+        centres = np.tile(self.centre, (len(ways), 1))
+        return np.isfinite(self.cache.first_hits(self.parent, centres, self.diagonal * ways))
+
     @cached_property
     def _walls(self) -> BoolArray:
-        """Whether the parent is in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame."""
-        steps = self.diagonal * np.concatenate([self.frame.axes, -self.frame.axes])
-        return np.isfinite(self.cache.first_hits(self.parent, np.tile(self.centre, (6, 1)), steps))
+        """The same along +x, +y, +z, -x, -y, -z of its frame."""
+        return self.walls(np.concatenate([self.frame.axes, -self.frame.axes]))
 
     @property
     def enclosed(self) -> float:
@@ -381,25 +371,28 @@ class JointScene:
     def _stands(self) -> bool:
         """The parent reaches the floor, or nearly so, as a bin on wheels."""
         bounds = self.cache.assembly.bounds
-        rise = self.cache.assembly.parts[self.parent].bounds[0, 2] - bounds[0, 2]
+        rise = self.parent_bounds[0, 2] - bounds[0, 2]
         return bool(rise < self.config.front_cues.low * np.ptp(bounds[:, 2]))
 
     @cached_property
     def front(self) -> FloatArray:
         """Of lids, level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
+        front = np.zeros(3)
         if not (self.panel and self.flat and self._stands):
-            return np.zeros(3)
-        carried = self.whole.tree.children[self.parent]
-        rolling, frames = map(self.whole.rolls, carried), [self.whole.frames[part] for part in carried]
-        body = self.cache.assembly.parts[self.parent].bounds
-        return front_of(body, frames, [*rolling], self.config.front_cues)
+            return front
+        for part in self.whole.tree.children[self.parent]:
+            rolls = self.whole.rolls(part)
+            if rolls or self.whole.frames[part].is_level_plate:
+                front += self.whole.foot_side(part, self.parent) * (-1.0 if rolls else 1.0)
+        length = float(np.linalg.norm(front))
+        # Feet or castors all around cancel out.
+        return front / length if length > self.config.front_cues.agreeing else np.zeros(3)
 
     @cached_property
     def pedal_direction(self) -> FloatArray:
         """Level direction from the parent to the child where that is a pedal, else zero, shape (3,)."""
-        if not is_level_plate(self.frame) or not self._stands:
-            return np.zeros(3)
-        return foot_side(self.frame, self.cache.assembly.parts[self.parent].bounds, self.config.front_cues)
+        stands = self.frame.is_level_plate and self._stands
+        return self.whole.foot_side(self.child, self.parent) if stands else np.zeros(3)
 
     @cached_property
     def twins(self) -> tuple[BoxFrame, ...]:
@@ -434,24 +427,8 @@ class JointScene:
     def grips(self) -> FloatArray:
         """Unit direction from a finger to its twin, shape (1, 3); (0, 3) for all other parts."""
         offsets = [twin.centre - self.centre for twin in self.twins] if self.gripping else []
-        long_enough = [offset for offset in offsets if np.linalg.norm(offset) > 1e-6 * self.diagonal]
-        return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
-
-
-def passes_gate(lines: Sequence[BearingLine], contact: ContactView, config: JointsConfig) -> bool:
-    """True where the best of bearing lines, the first, is one beyond doubt.
-
-    Either round surface and circles on both parts, or so much round surface on both parts that it needs no circles.
-    """
-    if not lines:
-        return False
-    line = lines[0]
-    if line.surface * line.circles > config.gate.product:
-        return True
-    child = located_support(contact.points, contact.normals, contact.weights, line)
-    m = len(contact.parent_points)
-    parent = located_support(contact.parent_points, contact.parent_normals, np.full(m, 1.0 / max(m, 1)), line)
-    return bool(np.sqrt(max(child * parent, 0.0)) > config.gate.located)
+        lengths = [(offset, np.linalg.norm(offset)) for offset in offsets]
+        return np.array([offset / long for offset, long in lengths if long > 1e-6 * self.diagonal]).reshape(-1, 3)
 
 
 def located_support(points: FloatArray, normals: FloatArray, weights: FloatArray, line: BearingLine) -> float:

@@ -65,6 +65,12 @@ class BoxFrame:
         """Centre of the slab in the world frame [m], shape (3,)."""
         return 0.5 * (self.slab_lower + self.slab_upper) @ self.axes
 
+    @property
+    def is_level_plate(self) -> bool:
+        """True if the part is thin upwards, as what is trodden on."""
+        sides = np.sort(self.extents)
+        return bool(abs(float(self.thin_axis @ UP)) > np.cos(np.radians(30.0)) and sides[0] < 0.5 * sides[1])
+
     def local(self, points: FloatArray) -> FloatArray:
         """Coordinates of world points (n, 3) in this frame [m]."""
         return points @ self.axes.T

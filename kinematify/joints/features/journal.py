@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from kinematify.contact.graph import pair
+from kinematify.geometry.sampling import SurfaceSamples
 from kinematify.joints.bearings.line import meeting_lines
 from kinematify.joints.bearings.refine_lines import line_frames
 from kinematify.robot.vectors import crossed, lengths_of, triangle_normals, unit
@@ -43,18 +44,6 @@ class Journal:
     """How far apart along the line its ends are held [m]."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Facing:
-    """Faces of a child that look at its parent across a gap."""
-
-    points: FloatArray
-    """Centroids [m], shape (n, 3)."""
-    normals: FloatArray
-    """Unit normals, shape (n, 3)."""
-    areas: FloatArray
-    """[m^2], shape (n,)."""
-
-
 def held_journal(cache: PartCache, parent: int, child: int, size: float, config: JointsConfig) -> Journal | None:
     """Return what the parent holds the child by, within the band of their contact; None where they have none.
 
@@ -72,8 +61,8 @@ def held_journal(cache: PartCache, parent: int, child: int, size: float, config:
     return find_journal(facing, size, config.journal)
 
 
-def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config: JournalConfig) -> Facing:
-    """Faces of the child whose nearest surface of the parent lies straight before them and looks back.
+def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config: JournalConfig) -> SurfaceSamples:
+    """Centroids, normals and areas of the child's faces before which the parent's nearest surface lies and looks back.
 
     Normals may point either way: many meshes are not oriented.
 
@@ -98,10 +87,10 @@ def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config
     ahead = np.abs(np.einsum("ij,ij->i", closest - points, normals)) > config.straight * distance
     opposite = np.abs(np.einsum("ij,ij->i", other, normals)) > config.straight
     keep = (distance < reach) & ahead & opposite
-    return Facing(points=points[keep], normals=normals[keep], areas=areas[keep])
+    return SurfaceSamples(points=points[keep], normals=normals[keep], areas=areas[keep], faces=near[keep])
 
 
-def find_journal(facing: Facing, size: float, config: JournalConfig) -> Journal | None:
+def find_journal(facing: SurfaceSamples, size: float, config: JournalConfig) -> Journal | None:
     """Find the line about which the child is held all around over the longest span.
 
     Args:
@@ -126,7 +115,7 @@ def _merit(journal: Journal) -> float:
     return journal.coverage * journal.span
 
 
-def _proposals(facing: Facing, config: JournalConfig, rng: np.random.Generator) -> tuple[Lines, FloatArray]:
+def _proposals(facing: SurfaceSamples, config: JournalConfig, rng: np.random.Generator) -> tuple[Lines, FloatArray]:
     """Lines where normals of neighbouring faces meet, and how far the first ones lie from them (`meeting_lines`)."""
     tree = cKDTree(facing.points)
     first = rng.integers(len(facing.areas), size=config.pairs)
@@ -138,7 +127,7 @@ def _proposals(facing: Facing, config: JournalConfig, rng: np.random.Generator) 
 
 
 def _journal(
-    facing: Facing, frame: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig
+    facing: SurfaceSamples, frame: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig
 ) -> Journal | None:
     """The journal about the last axis of a frame (3, 3) with surface at about this radius, if that is round."""
     *basis, axis = frame
@@ -161,7 +150,9 @@ def _journal(
     )
 
 
-def _fitting(facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig) -> FloatArray:
+def _fitting(
+    facing: SurfaceSamples, axis: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig
+) -> FloatArray:
     """Which faces lie at a radius and look along it, shape (n,)."""
     offset = facing.points - pivot
     radial = offset - (offset @ axis)[:, None] * axis
@@ -170,7 +161,7 @@ def _fitting(facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float,
     return np.asarray(along & (np.abs(length - radius) < config.radius_tolerance * radius))
 
 
-def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal | None:
+def _refined(facing: SurfaceSamples, journal: Journal, config: JournalConfig) -> Journal | None:
     """Least squares: the direction least along the fitting normals, then the point where the normals meet.
 
     None for a belt of a ball, whose normals lean along every line: it turns about any of them.

@@ -53,7 +53,7 @@ class MeasuredHypotheses:
         self.parent = scene.parent_samples
         rng = np.random.default_rng(7)
         self.few = rng.permutation(len(self.child.points))[:_POINTS]
-        (low, high), slack = scene.cache.assembly.parts[scene.child].bounds, 0.25 * self.unit
+        (low, high), slack = scene.bounds, 0.25 * self.unit
         near = np.all((self.parent.points > low - slack) & (self.parent.points < high + slack), axis=1)
         self.few_parent = rng.permutation(np.flatnonzero(near))[:_POINTS]
         contact = scene.contact
@@ -119,7 +119,7 @@ class MeasuredHypotheses:
     @cached_property
     def near_others(self) -> tuple[int, ...]:
         """Parts beside the parent that a motion may meet."""
-        low, high = self.scene.cache.assembly.parts[self.scene.child].bounds
+        low, high = self.scene.bounds
         return self.scene.cache.near(self.scene.others, low - 0.6 * self.unit, high + 0.6 * self.unit)
 
     def _entered(self, points: FloatArray, parts: Sequence[int], sense: float) -> FloatArray:
@@ -335,7 +335,7 @@ def where(m: MeasuredHypotheses) -> _Found:
     low, high = scene.cache.assembly.bounds
     whole = (scene.centre - low) / np.maximum(high - low, _TINY)
     at_rest = scene.cache.inside(scene.parent, m.child.points[m.few] - 0.01 * m.unit * m.child.normals[m.few])
-    own, its = (scene.cache.assembly.parts[part].bounds for part in (scene.child, scene.parent))
+    own, its = scene.bounds, scene.parent_bounds
     return {
         "inside_box": scene.inside,
         "inside_solid": at_rest.mean(),
@@ -360,7 +360,7 @@ def gravity(m: MeasuredHypotheses) -> _Found:
     sign = np.where(m.better == 0, 1.0, -1.0)
     velocity = m.velocity(m.scene.centre[None])[:, 0] * sign[:, None]
     speed = np.maximum(lengths_of(velocity), 1e-9 * m.unit)
-    out = (m.scene.centre - m.scene.cache.assembly.parts[m.scene.parent].bounds.mean(axis=0)) / m.unit
+    out = (m.scene.centre - m.scene.parent_bounds.mean(axis=0)) / m.unit
     whole = m.scene.centre - m.scene.cache.assembly.bounds.mean(axis=0)
     away = m.scene.outward
     return {

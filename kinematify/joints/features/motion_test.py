@@ -54,13 +54,11 @@ class Sweep:
         return Sweep(hits=np.minimum(self.hits, other.hits), counted=self.counted, limit=self.limit)
 
 
-def moving_points(cache: PartCache, part: int, config: SweepConfig) -> FloatArray:
-    """Points that represent a part in a sweep: its samples, drawn towards their mean by `config.shrink`."""
-    points = cache.samples(part).points
-    stride = max(1, len(points) // config.points)
-    chosen = points[::stride]
+def moving_points(scene: JointScene) -> FloatArray:
+    """Points that represent a child in a sweep [m], (n, 3): its samples, drawn towards their mean by `sweep.shrink`."""
+    points, config = scene.samples.points, scene.config.sweep
     centre = points.mean(axis=0)
-    return np.asarray(centre + (1.0 - config.shrink) * (chosen - centre))
+    return np.asarray(centre + (1.0 - config.shrink) * (points[:: max(1, len(points) // config.points)] - centre))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

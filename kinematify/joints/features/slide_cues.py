@@ -11,7 +11,6 @@ from kinematify.joints.features.motion_test import moving_points, slide_paths
 from kinematify.joints.features.ranking import Ranked, cue_sum
 
 if TYPE_CHECKING:
-    from kinematify.config import JointsConfig
     from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.motion_test import Sweep
@@ -28,24 +27,22 @@ CAP = 2.5  # the most that one cue says
 _DOMINANT = 0.7  # share of the normals of a contact along one direction, from which it is pressed along that
 
 
-def rank_slides(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ranked:
+def rank_slides(scene: JointScene, lines: Hypotheses) -> Ranked:
     """Return what cues say of directions along which the child may slide, best first.
 
     Args:
         scene: The pair.
         lines: Slides alone.
-        config: Thresholds and sweeps.
     """
-    axes = lines.axes
-    points = moving_points(scene.cache, scene.child, config.sweep)
+    axes, points, config = lines.axes, moving_points(scene), scene.config
     limit = config.slides.sweep * scene.diagonal
     paths = slide_paths(scene.cache, points, axes, limit=limit, config=config.sweep)
     with_parent = paths.against((scene.parent,))
     everything = with_parent.joined(paths.against(scene.others))
     cues = {
-        **_motion_cues(scene, axes, with_parent, everything, config),
-        **_shape_cues(scene, axes, with_parent, config),
-        "small_way": _small_way(scene, points, axes, config),
+        **_motion_cues(scene, axes, with_parent, everything),
+        **_shape_cues(scene, axes, with_parent),
+        "small_way": _small_way(scene, points, axes),
     }
     return Ranked(
         lines=lines,
@@ -56,19 +53,16 @@ def rank_slides(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> R
     ).best_first
 
 
-def _motion_cues(
-    scene: JointScene, axes: FloatArray, with_parent: Sweep, everything: Sweep, config: JointsConfig
-) -> dict[str, FloatArray]:
+def _motion_cues(scene: JointScene, axes: FloatArray, with_parent: Sweep, everything: Sweep) -> dict[str, FloatArray]:
     """Free travel one way, stop the other way, and what is crossed on a short way."""
-    large = 1.0 - scene.smallness
-    share = config.sweep.share
+    large, slides, share = 1.0 - scene.smallness, scene.config.slides, scene.config.sweep.share
     parent = with_parent.free(share) / scene.diagonal
     free = everything.free(share) / scene.diagonal
     own = np.abs(axes @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
-    useful = np.clip(config.slides.useful_share * own, config.slides.useful_least, None)
+    useful = np.maximum(slides.useful_share * own, slides.useful_least)
     longest = np.minimum(1.0, parent.max(axis=1) / useful)
     shortest = np.minimum(1.0, parent.min(axis=1) / useful)
-    short = config.slides.short_travel * scene.diagonal
+    short = slides.short_travel * scene.diagonal
     crossed = 0.5 * (with_parent.crossed(short) + everything.crossed(short)).min(axis=1)
     return {
         "travel_parent": large * longest,
@@ -79,18 +73,18 @@ def _motion_cues(
     }
 
 
-def _small_way(scene: JointScene, points: FloatArray, axes: FloatArray, config: JointsConfig) -> FloatArray:
+def _small_way(scene: JointScene, points: FloatArray, axes: FloatArray) -> FloatArray:
     """Free travel of a small part in its own lengths, 1 at most: a pocket holds it on all sides but the open one.
 
     Small parts move by less than the grace of other sweeps, so this one has none.
     """
     if scene.smallness == 0.0:
         return np.zeros(len(axes))
-    strict = config.sweep.model_copy(update={"grace": 0.0})
+    strict = scene.config.sweep.model_copy(update={"grace": 0.0})
     own = np.abs(axes @ scene.frame.axes.T) @ scene.frame.extents
     paths = slide_paths(scene.cache, points, axes, limit=scene.frame.diagonal, config=strict)
     swept = paths.against((scene.parent,))
-    return np.asarray(scene.smallness * np.minimum(1.0, swept.free(config.sweep.share).max(axis=1) / own))
+    return np.asarray(scene.smallness * np.minimum(1.0, swept.free(strict.share).max(axis=1) / own))
 
 
 def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
@@ -104,17 +98,16 @@ def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
     return np.asarray((closeness * (free > 0.1)).max(axis=1))
 
 
-def _shape_cues(scene: JointScene, axes: FloatArray, with_parent: Sweep, config: JointsConfig) -> dict[str, FloatArray]:
+def _shape_cues(scene: JointScene, axes: FloatArray, with_parent: Sweep) -> dict[str, FloatArray]:
     large = 1.0 - scene.smallness
     thin = np.abs(axes @ scene.frame.thin_axis)
     shares, facing = scene.contact.facing
     pressed = np.abs(axes @ facing[:, 2]) * (shares[2] > _DOMINANT)
-    free = with_parent.free(config.sweep.share)
+    free = with_parent.free(scene.config.sweep.share)
     rising = np.where(axes[:, 2] >= 0, free[:, 0], free[:, 1]) > 0.1 * scene.diagonal
-    bearing = np.zeros(len(axes))
+    bearing, rail = np.zeros((2, len(axes)))
     if scene.has_bearing:
         bearing = np.abs(axes @ scene.lines[0].axis)
-    rail = np.zeros(len(axes))
     if scene.rail is not None:
         rail = scene.mechanism * scene.prismatic_score * np.abs(axes @ scene.rail.axis)
     return {
@@ -124,14 +117,12 @@ def _shape_cues(scene: JointScene, axes: FloatArray, with_parent: Sweep, config:
         "along_rail": rail,
         "thin_small": scene.smallness * thin,
         "normal_small": scene.smallness * pressed,
-        "twin": _along_any(axes, scene.grips, config),
+        "twin": _grip(scene, axes),
         "lift_off": large * float(scene.panel and scene.flat and scene.on_top) * np.abs(axes @ UP) * rising,
     }
 
 
-def _along_any(axes: FloatArray, directions: FloatArray, config: JointsConfig) -> FloatArray:
-    """1 for each axis that no candidate tells apart from one of the directions, else 0, shape (c,)."""
-    if len(directions) == 0:
-        return np.zeros(len(axes))
-    nearest = np.abs(axes @ directions.T).max(axis=1)
-    return np.asarray(nearest >= np.cos(np.radians(config.slides.distinct_deg)), dtype=np.float64)
+def _grip(scene: JointScene, axes: FloatArray) -> FloatArray:
+    """1 for each axis that no candidate tells apart from the way of a finger to its twin, else 0, shape (c,)."""
+    nearest = np.abs(axes @ scene.grips.T).max(axis=1, initial=0.0)
+    return np.asarray(nearest >= np.cos(np.radians(scene.config.slides.distinct_deg)), dtype=np.float64)

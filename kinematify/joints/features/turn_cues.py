@@ -19,7 +19,6 @@ from kinematify.joints.features.ranking import Ranked, cue_sum
 from kinematify.robot.vectors import crossed, lengths_of, unit
 
 if TYPE_CHECKING:
-    from kinematify.config import JointsConfig
     from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.motion_test import Sweep
@@ -38,24 +37,23 @@ WEIGHTS = {
 CAP, BEARING_BONUS = 1.5, 4.0  # the most that one cue says, and what a bearing that passes the gate adds
 
 
-def rank_turns(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ranked:
+def rank_turns(scene: JointScene, lines: Hypotheses) -> Ranked:
     """Return what cues say of lines about which the child may turn, best first.
 
     Args:
         scene: The pair.
         lines: Turns alone.
-        config: Thresholds and sweeps.
     """
-    points = moving_points(scene.cache, scene.child, config.sweep)
+    points, config = moving_points(scene), scene.config
     limit = np.radians(config.panels.sweep_deg)
     paths = turn_paths(scene.cache, points, lines.axes, lines.pivots, limit=limit, config=config.sweep)
     with_parent = paths.against((scene.parent,))
     everything = with_parent.joined(paths.against(scene.others))
     cues = {
-        **_motion_cues(scene, lines, with_parent, everything, config=config),
-        **_contact_cues(scene, lines, config),
-        **_handle_cues(scene, lines, config),
-        **_margin_cues(scene, lines, config),
+        **_motion_cues(scene, lines, (with_parent, everything)),
+        **_contact_cues(scene, lines),
+        **_handle_cues(scene, lines),
+        **_margin_cues(scene, lines),
         **_gravity_cues(scene, lines, with_parent),
     }
     cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
@@ -94,60 +92,51 @@ def outwardness(scene: JointScene, lines: Hypotheses) -> FloatArray:
     return velocity @ away / np.maximum(speed, 1e-9 * scene.diagonal)
 
 
-def _motion_cues(
-    scene: JointScene,
-    lines: Hypotheses,
-    with_parent: Sweep,
-    everything: Sweep,
-    *,
-    config: JointsConfig,
-) -> dict[str, FloatArray]:
+def _motion_cues(scene: JointScene, lines: Hypotheses, both: tuple[Sweep, Sweep]) -> dict[str, FloatArray]:
     """Free turn, share that crosses, gap that opens behind the hinge, and whether the free way leads outwards."""
-    share, outward = config.sweep.share, outwardness(scene, lines)
-    full = np.radians(config.panels.full_turn_deg)
-    mean_free = 0.5 * (np.minimum(with_parent.free(share), full) + np.minimum(everything.free(share), full)) / full
+    outward, full = outwardness(scene, lines), np.radians(scene.config.panels.full_turn_deg)
+    free = [np.minimum(swept.free(scene.config.sweep.share), full) for swept in both]
+    mean_free = 0.5 * (free[0] + free[1]) / full
     prefer = mean_free + 0.1 * np.stack([outward, -outward], axis=1)
     best = np.argmax(prefer, axis=1)
     rows = np.arange(len(best))
-    crossed = 0.5 * (with_parent.crossed(0.5 * full) + everything.crossed(0.5 * full))
+    crossed = 0.5 * (both[0].crossed(0.5 * full) + both[1].crossed(0.5 * full))
     sign = np.where(best == 0, 1.0, -1.0)
     return {
         "free": mean_free[rows, best],
         "crossed": crossed[rows, best],
         "outside": (1.0 - scene.mechanism) * np.clip(sign * outward, 0.0, 1.0),
-        "separation": _separation(scene, lines, sign, config),
+        "separation": _separation(scene, lines, sign),
     }
 
 
-def _separation(scene: JointScene, lines: Hypotheses, sign: FloatArray, config: JointsConfig) -> FloatArray:
+def _separation(scene: JointScene, lines: Hypotheses, sign: FloatArray) -> FloatArray:
     """Gap to the parent after a turn of `panels.part_deg` in the preferred direction, fraction of the diagonal."""
-    points = scene.samples.points
-    points = points[:: max(1, len(points) // config.panels.separation_points)]
+    points, panels = scene.samples.points, scene.config.panels
+    points = points[:: max(1, len(points) // panels.separation_points)]
     before = float(scene.cache.distances(scene.parent, points).min())
-    angle = sign * np.radians(config.panels.part_deg)
-    moved = turned_about(points[None], lines, angle)
+    moved = turned_about(points[None], lines, sign * np.radians(panels.part_deg))
     distances = scene.cache.distances(scene.parent, moved.reshape(-1, 3)).reshape(moved.shape[:2])
     return np.asarray(np.maximum(distances.min(axis=1) - before, 0.0) / scene.diagonal)
 
 
-def _contact_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
+def _contact_cues(scene: JointScene, lines: Hypotheses) -> dict[str, FloatArray]:
     """Return how close to the line the parts touch, and how close the line runs to the parent."""
-    along = (scene.frame.local(scene.samples.points)).T
-    half = 0.5 * np.ptp(along, axis=1)
+    half = 0.5 * np.ptp(scene.frame.local(scene.samples.points), axis=0)
     span = np.abs(lines.axes @ scene.frame.axes.T) @ half
     foot = scene.centre - lines.arms(scene.centre)
     steps = np.linspace(-0.9, 0.9, 7)
     probes = foot[:, None] + steps[None, :, None] * (span[:, None] * lines.axes)[:, None]
     to_parent = scene.cache.distances(scene.parent, probes.reshape(-1, 3)).reshape(len(span), -1)
-    cues = {"axis_to_parent": np.sort(to_parent, axis=1)[:, :3].mean(axis=1) / scene.diagonal}
     share, radius = np.zeros(len(span)), np.ones(len(span))
     if len(scene.contact.points):
         relative = _radii(scene.contact.points, lines) / _reach(scene, lines)[:, None]
-        share = (relative < config.panels.hinge_band) @ scene.contact.weights
+        share = (relative < scene.config.panels.hinge_band) @ scene.contact.weights
         radius = relative @ scene.contact.weights
-    ajar = float(is_ajar(scene, lines, share, config))
+    # A panel that touches its parent along one edge only stands open; then contact tells the hinge by itself.
+    ajar = scene.plate and share[lines.places == CORNER].max(initial=0.0) > scene.config.panels.ajar_share
     return {
-        **cues,
+        "axis_to_parent": np.sort(to_parent, axis=1)[:, :3].mean(axis=1) / scene.diagonal,
         "contact_share": share,
         "contact_radius": radius,
         "compact_radius": scene.compact * radius,
@@ -155,46 +144,36 @@ def _contact_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) ->
     }
 
 
-def is_ajar(scene: JointScene, lines: Hypotheses, share: FloatArray, config: JointsConfig) -> bool:
-    """A panel that touches its parent along one edge only stands open; then contact tells the hinge by itself."""
-    corners = lines.places == CORNER
-    return bool(scene.plate and corners.any() and share[corners].max() > config.panels.ajar_share)
-
-
-def _handle_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
+def _handle_cues(scene: JointScene, lines: Hypotheses) -> dict[str, FloatArray]:
     """A handle is far from the hinge, and a long one runs along it."""
-    n = len(lines.axes)
     if scene.handle is None:
-        return {"handle_distance": np.zeros(n), "handle_parallel": np.zeros(n)}
-    distance = lengths_of(lines.arms(scene.handle.centre)) / _reach(scene, lines)
-    parallel = np.abs(lines.axes @ scene.handle.direction)
+        return dict.fromkeys(("handle_distance", "handle_parallel"), np.zeros(len(lines)))
+    panels, distance = scene.config.panels, lengths_of(lines.arms(scene.handle.centre)) / _reach(scene, lines)
     # Handles of tall doors are mounted either way; one that lies level in the middle is that of a door that drops.
-    tall = scene.upright and _tallness(scene) > config.panels.tall and not _handle_in_the_middle(scene)
+    tall = scene.upright and _tallness(scene) > panels.tall and not _handle_in_the_middle(scene)
     return {
         "handle_distance": np.minimum(distance, 1.0),
-        "handle_parallel": parallel * (config.panels.tall_handle if tall else 1.0),
+        "handle_parallel": np.abs(lines.axes @ scene.handle.direction) * (panels.tall_handle if tall else 1.0),
     }
 
 
-def _margin_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
+def _margin_cues(scene: JointScene, lines: Hypotheses) -> dict[str, FloatArray]:
     """The hinge is on the side where less of the body is left; controls and the next door are opposite."""
-    n = len(lines.axes)
-    here, opposite = np.zeros(n), np.zeros(n)
+    frame, panels, (here, opposite) = scene.frame, scene.config.panels, np.zeros((2, len(lines)))
     if scene.panel:
-        frame = scene.frame
         arms = -lines.arms(scene.centre) @ frame.axes.T
         arms[:, frame.thin] = 0.0
         side = np.argmax(np.abs(arms), axis=1)
-        aside = arms[np.arange(n), side]
+        aside = arms[np.arange(len(lines)), side]
         low = frame.slab_lower - scene.body_box[0]
         high = scene.body_box[1] - frame.slab_upper
         near = np.where(aside > 0, high[side], low[side]) / scene.diagonal
         far = np.where(aside > 0, low[side], high[side]) / scene.diagonal
         at_edge = np.abs(aside) > 0.3 * frame.extents[side]
         here, opposite = np.where(at_edge, near, 0.0), np.where(at_edge, far, 0.0)
-    difference = np.clip(2.0 * (opposite - here), -config.panels.margin_cap, config.panels.margin_cap)
+    difference = np.clip(2.0 * (opposite - here), -panels.margin_cap, panels.margin_cap)
     # A handle says directly where the free side is; then the margins are only a hint.
-    factor = config.panels.weak_margin if scene.flat or _handle_off_centre(scene) else 1.0
+    factor = panels.weak_margin if scene.flat or _handle_off_centre(scene) else 1.0
     return {"margin_difference": factor * difference, "margin_here": factor * np.maximum(here, 0.0)}
 
 
@@ -264,8 +243,7 @@ def _heel(scene: JointScene, lines: Hypotheses, arms: FloatArray) -> FloatArray:
 def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
     """Return how much more of the body stands above the lid on the hinge's side than opposite, in [-1, 1]."""
     samples = scene.parent_samples
-    top = float(scene.cache.assembly.parts[scene.child].bounds[1, 2])
-    above = samples.points[:, 2] > top
+    above = samples.points[:, 2] > scene.bounds[1, 2]
     if above.mean() < 0.02:
         return np.zeros(len(arms))
     level = arms.copy()

@@ -18,7 +18,6 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.config import JointsConfig
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.ranking import Ranked
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -36,22 +35,21 @@ _BOX = (0.25, 0.5)
 leaves have up to a tenth, one drawer behind the whole front of a cabinet is half as deep as wide."""
 
 
-def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
+def type_cues(scene: JointScene, turns: Ranked, slides: Ranked) -> dict[str, float]:
     """Return what speaks for sliding or for turning, in terms of `WEIGHTS`.
 
     Args:
         scene: The pair.
         turns: Proposed turns, best first.
         slides: Proposed slides, best first.
-        config: Thresholds.
     """
     cues = {
         **_room_cues(scene, slides),
         **_shape_cues(scene, turns),
         "row": scene.smallness * (len(scene.twins) >= 2),
         "gripper": float(scene.gripping),
-        **_clearance_cues(scene, turns, slides, config),
-        "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
+        **_clearance_cues(scene, turns, slides),
+        "rail": scene.mechanism * _held_rail(scene, turns, slides),
     }
     held = max(cues["keyed"], cues["rail"], scene.mechanism * cues["gripper"])
     cues["panel"] *= 1.0 - held  # a plate that cannot turn, rides on a rail or closes on its like is no door
@@ -61,7 +59,7 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
     whirls = float(scene.has_bearing and turns.free_parent[0].min() >= np.radians(89.0))
     for box in ("drawer", "box_inside"):
         cues[box] *= 1.0 - whirls  # no drawer turns on a shaft
-    if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < config.upright_cosine:
+    if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < scene.config.upright_cosine:
         cues["round_lid"] = 0.0  # a flap in pins across its mouth is not lifted off
     cues["round_lid"] *= 1.0 - cues["retained"]  # what holds it down is turned first
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
@@ -74,7 +72,7 @@ def type_odds(cues: Mapping[str, float]) -> float:
     return BIAS + sum(float(np.clip(WEIGHTS[k] * v, -CAP, CAP)) for k, v in cues.items())
 
 
-def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> float:
+def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked) -> float:
     """The rail, unless it runs along a line about which the part can turn: a pin is extruded along its axis too.
 
     Nor is it one where the part turns freely about any line and is soon stopped along the rail: boxy knuckles that
@@ -82,7 +80,7 @@ def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsC
     """
     if scene.rail is None:
         return 0.0
-    rail = scene.rail.axis
+    rail, config = scene.rail.axis, scene.config
     along = any(abs(float(line.axis @ rail)) > 0.95 for line in scene.lines[:1])
     turn = float(np.degrees(turns.free_parent[0].max()))
     if along and turn > config.rails.pin_deg:
@@ -92,9 +90,9 @@ def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsC
     return 0.0 if loose else scene.prismatic_score
 
 
-def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
+def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked) -> dict[str, float]:
     """Return the motions that the contact stops: a key, skirt or groove turning, a bead, barrel or fork sliding."""
-    few = _near_best(scene, turns, config)
+    few, config = _near_best(scene, turns), scene.config
     clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0])
     if clearance is None:
         return {"keyed": 0.0, "retained": 0.0}
@@ -111,28 +109,30 @@ def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: Jo
         # Links of machines overlap where they meet; guided are rods in bores that cannot turn as a whole either, and
         # what is extruded along its slide, nowhere round, and stopped within its clearance.
         blocked = float(turns.free_parent[0].max()) < np.radians(config.rails.pin_deg)
-        guided = blocked if scene.has_bearing else _extruded(scene, slides.axes[0], config) and turn < 2.0 * least
+        guided = blocked if scene.has_bearing else _extruded(scene, slides.axes[0]) and turn < 2.0 * least
     return {
         "keyed": float(guided and goes(slide, turn)),
         "retained": float(goes(turn, slide)) * (1.0 - scene.smallness * (not scene.has_bearing)) * (not scene.serial),
     }
 
 
-def _extruded(scene: JointScene, direction: FloatArray, config: JointsConfig) -> bool:
+def _extruded(scene: JointScene, direction: FloatArray) -> bool:
     """True if the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
     rail = scene.rail
-    return rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > config.rails.lead_full
+    return (
+        rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > scene.config.rails.lead_full
+    )
 
 
-def _near_best(scene: JointScene, turns: Ranked, config: JointsConfig) -> IntArray:
+def _near_best(scene: JointScene, turns: Ranked) -> IntArray:
     """The best line, and where it is no bearing the next ones along the same edge, which may fit the hinge better."""
     if scene.has_bearing:
         return np.zeros(1, dtype=np.int64)
-    axes, pivots = turns.axes[: config.clearance.candidates], turns.lines.pivots[: config.clearance.candidates]
-    offset = pivots - pivots[0]
-    apart = lengths_of(crossed(offset, axes[0]))
-    same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < config.clearance.edge * scene.frame.diagonal)
-    return np.flatnonzero(same)[: config.clearance.lines]
+    clearance = scene.config.clearance
+    axes, pivots = (some[: clearance.candidates] for some in (turns.axes, turns.lines.pivots))
+    apart = lengths_of(crossed(pivots - pivots[0], axes[0]))
+    same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < clearance.edge * scene.frame.diagonal)
+    return np.flatnonzero(same)[: clearance.lines]
 
 
 def _room_cues(scene: JointScene, slides: Ranked) -> dict[str, float]:

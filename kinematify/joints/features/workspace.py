@@ -265,10 +265,10 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
         (its, np.concatenate([thinned(beside, _PARENT), _nearest(cache, child, its, beside)]), child, PARENT),
     ]
     centre = own.points.mean(axis=0)
-    points = [samples.points[index] for samples, index, _, _ in chosen]
-    normals = [samples.normals[index] for samples, index, _, _ in chosen]
-    gaps = [cache.distances(to, samples.points[index]) for samples, index, to, _ in chosen]
-    labels = [np.full(len(index), label) for _, index, _, label in chosen]
+    found = [
+        (samples.points[index], samples.normals[index], cache.distances(to, samples.points[index]), label)
+        for samples, index, to, label in chosen
+    ]
     reach = _AROUND_OTHERS * unit
     for parts, count, label in ((others, _OTHERS, OTHER), (carried, _CARRIED, CARRIED)):
         near = cache.near(parts, low - reach, high + reach)
@@ -278,17 +278,15 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
         some = sorted(map(cache.samples, near), key=lambda item: float(lengths_of(item.points.mean(axis=0) - centre)))
         places, faces = (np.concatenate([getattr(item, name) for item in some]) for name in ("points", "normals"))
         index = thinned(np.flatnonzero(_within(places, low, high, reach)), count)
-        points.append(places[index])
-        normals.append(faces[index])
-        gaps.append(cache.distances(child, places[index]))
-        labels.append(np.full(len(index), label))
+        found.append((places[index], faces[index], cache.distances(child, places[index]), label))
+    points, normals, gaps, labels = zip(*found, strict=True)
     parent_low, parent_high = cache.assembly.parts[parent].bounds
     reaches = np.array([np.linalg.norm(parent_high - parent_low), cache.diagonal])
     return Cloud(
         points=np.concatenate(points),
         normals=np.concatenate(normals),
         gaps=np.concatenate(gaps) / unit,
-        labels=np.concatenate(labels),
+        labels=np.repeat(labels, [len(some) for some in points]),
         centre=centre,
         parent_centre=its.points.mean(axis=0),
         unit=unit,
