@@ -91,9 +91,9 @@ class CollisionConfig(StageConfig):
 class PreviewConfig(StageConfig):
     """Pictures of a model; lengths as fractions of the diagonal of what is shown."""
 
-    panel_width: int = 760  # two panels fill the width of a README without scaling on most screens
+    panel_width: int = 560  # two panels fill the width of a README without scaling on most screens
     """Width of one panel [pixels]."""
-    panel_height: int = 700  # a little wide: most objects show a long side
+    panel_height: int = 516  # a little wide: most objects show a long side
     """Height of one panel [pixels]."""
     subsamples: int = 2  # on a turned grid, 5 levels of coverage: 3 take twice the time and look the same
     """Rays per pixel side where edges are smoothed."""
@@ -113,7 +113,7 @@ class PreviewConfig(StageConfig):
     """Directions around the object that are tried for the best view."""
     probe_pixels: int = 96  # enough to count the pixels of a knob
     """Width of the small pictures that compare views [pixels]."""
-    glyph_radius: float = 0.0045  # arrows about 6 pixels thick
+    glyph_radius: float = 0.0045  # arrows about 5 pixels thick
     """Half the thickness of a joint arrow."""
     glyph_halo: float = 0.0028  # 2 pixels: red stays red on a red door
     """Width of the light rim of a joint arrow."""
@@ -127,5 +127,5 @@ class PreviewConfig(StageConfig):
     """Joints are not slid farther than this in a picture."""
     chain_joints: int = 8  # arms have 6 or 7
     """Long chains of more moving joints than this turn less, so that they do not curl up."""
-    legend_entries: int = 12  # three rows of four
+    legend_entries: int = 12  # four rows of three
     """Joints named below the picture; the rest is counted."""
