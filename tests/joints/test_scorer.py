@@ -88,3 +88,10 @@ def test_the_choice_is_the_first_alternative() -> None:
     first = judged.alternatives(CONFIG.joints.alternatives)[0]
     np.testing.assert_array_equal(first.axis, judged.hypotheses.axes[judged.best])
     assert 0.0 < judged.confidence <= 1.0
+
+
+def test_what_models_say_together_is_surer_than_their_mean() -> None:
+    judged = judge(first_features("edge_door"), CONFIG.joints.confidence)
+    kinds, axes, best = judged.hypotheses.kinds, judged.hypotheses.axes, judged.best
+    agree = (kinds == kinds[best]) & (np.abs(axes @ axes[best]) > np.cos(np.radians(5.0)))
+    assert 0.5 < judged.posterior[agree].sum() < judged.confidence

@@ -92,9 +92,6 @@ def _estimate(features: Features, judged: Posterior) -> JointEstimate:
             **features.type_cues,
             "odds_prismatic": judged.odds_prismatic,
             "probability_fixed": judged.fixed,
-            "bearing_gate": float(scene.has_bearing),
-            "smallness": scene.smallness,
-            "mechanism": scene.mechanism,
             **found.evidence,
         },
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -28,6 +28,7 @@ _SAME_COSINE = float(np.cos(np.radians(5.0)))
 _SAME_LINE = 0.02
 _ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
 _DISTANCE = 0.05  # of the child's diagonal, the same for a line
+_SURER = 1.33  # power of what the models say together: each errs where others do not, and their mean is too unsure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -116,7 +117,8 @@ class Posterior:
     @property
     def confidence(self) -> float:
         """Return how likely type and direction are right: of all hypotheses that agree with the best one in both."""
-        return float(min(self.posterior[self._agree[self.best]].sum(), 1.0))
+        surer = replace(self, prior=self.prior**_SURER).posterior
+        return float(min(surer[self._agree[self.best]].sum(), 1.0))
 
     @property
     def odds_prismatic(self) -> float:
