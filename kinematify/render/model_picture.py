@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
-from scipy.ndimage import distance_transform_edt
 
 from kinematify.config import load_config
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades, usual_colors
@@ -181,6 +180,8 @@ def draw_panels(
 
 def _draw_numbers(image: Image.Image, panel: PreviewPanel, camera: Camera) -> None:
     """Write its number on each mesh where most of it is seen around; small ones first, none over others or arrows."""
+    from scipy.ndimage import distance_transform_edt  # noqa: PLC0415 - a tenth of a second, and few have numbers
+
     seen = panel.scene.mesh_of_pixel(camera, _BADGE_STEP)
     if panel.scene.glyphs_alone is not None:
         seen[panel.scene.glyphs_alone.mesh_of_pixel(camera, _BADGE_STEP) >= 0] = -1

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
-from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
+from PIL import Image, ImageDraw, ImageFilter, ImageFont
 
 from kinematify.geometry.rays import RayScene
 from kinematify.render.camera import fit_camera
-from kinematify.robot.appearance import linear_of, srgb_of
+from kinematify.robot.appearance import linear_of, plain, srgb_of
 from kinematify.robot.vectors import vertex_normals
 
 if TYPE_CHECKING:
@@ -187,24 +187,12 @@ class _Viewpoint:
     normals: FloatArray
     """Smooth, facing the viewer, zero where nothing is met, shape (n, 3)."""
 
-    @cached_property
-    def points(self) -> FloatArray:
-        """Where the rays meet a mesh [m], shape (n, 3); their origin where they meet none."""
-        distance = np.where(self.hits.met, self.hits.distance, 0.0)
-        points: FloatArray = self.origins + distance[:, None] * self.directions
+    def points(self, chosen: IntArray) -> FloatArray:
+        """Where some rays meet a mesh [m], shape (*chosen.shape, 3); their origin where they meet none."""
+        distance = np.where(self.hits.met[chosen], self.hits.distance[chosen], 0.0)
+        origins = self.origins if self.origins.ndim == 1 else self.origins[chosen]
+        points: FloatArray = origins + distance[..., None] * self.directions[chosen]
         return points
-
-
-@dataclass(frozen=True, eq=False)
-class _SparseLight:
-    """Share of the sky that some pixels of a picture see."""
-
-    mesh: IntArray
-    """Shape (rows, columns)."""
-    normals: FloatArray
-    """Shape (rows, columns, 3)."""
-    light: FloatArray
-    """From 0 to 1, shape (rows, columns)."""
 
 
 class _Painter:
@@ -216,8 +204,7 @@ class _Painter:
         halo = config.glyph_halo * self.rays.size
         self.glyphs = scene.glyphs_alone.rays if scene.glyphs_alone else None
         self.halo = RayScene([_swollen(mesh, halo) for mesh in scene.glyphs]) if scene.glyphs else None
-        self.shades = np.array([mesh.shade for mesh in scene.meshes])
-        self.colors = linear_of(np.array([mesh.color for mesh in scene.meshes]))
+        self.looks = np.concatenate([_looks(mesh) for mesh in scene.meshes])
         self.glyph_colors = linear_of(np.array([mesh.color for mesh in scene.glyphs]).reshape(-1, 3))
         self.camera, self.config = camera, config
         self.shape = (camera.height, camera.width)
@@ -227,14 +214,14 @@ class _Painter:
     def paint(self) -> Image.Image:
         """Cast one ray per pixel, then more where one is not enough."""
         view = self._view(_pixel_centers(*map(range, self.shape)))
-        sparse = self._sparse_light(view)
-        image = self._colors(view, self._light(view, np.arange(len(view.pixels)), sparse))
+        self.sparse = self._sparse_light(view)
+        image = self._colors(view, self._light(view, np.arange(len(view.pixels))))
         near = self._near_glyphs(view)
         for rough, has_glyphs in ((self._edges(view, image) & ~near, False), (near, True)):
             chosen = np.flatnonzero(rough)
             for start in range(0, len(chosen), _BLOCK):
                 block = chosen[start : start + _BLOCK]
-                image[block] = self._subsampled(block, view, sparse, has_glyphs=has_glyphs)
+                image[block] = self._subsampled(block, view, has_glyphs=has_glyphs)
         return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
     def _view(self, pixels: FloatArray) -> _Viewpoint:
@@ -279,30 +266,25 @@ class _Painter:
     def _behind(self, view: _Viewpoint, at: IntArray, panes: int) -> FloatArray:
         """Linear colour of what is seen through the surfaces that some rays meet, shape (len(at), 3)."""
         along = view.directions[at]
-        behind = self._seen(view.pixels[at], view.points[at] + _BEHIND * self.rays.size * along, along)
+        behind = self._seen(view.pixels[at], view.points(at) + _BEHIND * self.rays.size * along, along)
         light, met = np.ones(len(at)), np.flatnonzero(behind.hits.met)
         sets = met % len(self.sky.sets)
-        light[met] = self.sky.open_share(behind.points[met], behind.normals[met], sets)
+        light[met] = self.sky.open_share(behind.points(met), behind.normals[met], sets)
         return self._colors(behind, light, panes - 1)
 
     def _surfaces(self, view: _Viewpoint) -> tuple[FloatArray, FloatArray]:
         """Linear colour and opacity of what rays meet, without light, shapes (number met, 3) and (number met,)."""
-        met = view.hits.met
-        mesh = view.hits.mesh[met]
-        colors: FloatArray = self.colors[mesh]
-        opacity = np.ones(len(mesh))
+        met = np.flatnonzero(view.hits.met)
+        looks = self.looks[view.hits.face[met]]
         for index, posed in enumerate(self.meshes):
-            at = np.flatnonzero(mesh == index)
-            if posed.appearance is not None and len(at):
-                face = view.hits.face[met][at] - self.first_faces[index]
-                if not posed.appearance.is_textured:  # a colour for each material is quicker than one for each pixel
-                    painted = np.array([material.color for material in posed.appearance.materials])
-                    material = posed.appearance.material_of_face[face]
-                    colors[at], opacity[at] = linear_of(painted[:, :3])[material], painted[material, 3]
-                    continue
-                seen = posed.appearance.colors_at(face, view.hits.barycentric[met][at])
-                colors[at], opacity[at] = linear_of(seen[:, :3]), seen[:, 3]
-        return colors * self.shades[mesh][:, None], opacity
+            if posed.appearance is not None and posed.appearance.is_textured:
+                at = np.flatnonzero(view.hits.mesh[met] == index)
+                rays = met[at]
+                seen = posed.appearance.colors_at(
+                    view.hits.face[rays] - self.first_faces[index], view.hits.barycentric[rays]
+                )
+                looks[at] = np.column_stack([linear_of(seen[:, :3]) * posed.shade, seen[:, 3]])
+        return looks[:, :3], looks[:, 3]
 
     @cached_property
     def _lamp(self) -> FloatArray:
@@ -333,49 +315,49 @@ class _Painter:
             return np.zeros(len(view.pixels), dtype=bool)
         coarse = view.directions.reshape(*self.shape, 3)[::_SPARSE, ::_SPARSE]
         met = self.halo.first_hits(view.origins, coarse.reshape(-1, 3)).met.reshape(coarse.shape[:2])
-        grown = binary_dilation(met, np.ones((3, 3), dtype=bool)).repeat(_SPARSE, axis=0).repeat(_SPARSE, axis=1)
-        return np.asarray(grown[: self.shape[0], : self.shape[1]].ravel(), dtype=bool)
+        grown = np.asarray(Image.fromarray(met.astype(np.uint8)).filter(ImageFilter.MaxFilter(3)), dtype=bool)
+        return grown.repeat(_SPARSE, axis=0).repeat(_SPARSE, axis=1)[: self.shape[0], : self.shape[1]].ravel()
 
-    def _subsampled(
-        self, chosen: IntArray, coarse: _Viewpoint, sparse: _SparseLight, *, has_glyphs: bool
-    ) -> FloatArray:
+    def _subsampled(self, chosen: IntArray, coarse: _Viewpoint, *, has_glyphs: bool) -> FloatArray:
         """Mean linear colour of a turned grid of rays in each chosen pixel, shape (len(chosen), 3)."""
         side = self.config.subsamples
         across, down = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
         # No two rays share a row or a column: upright and level edges have as many steps as there are rays.
         shares = np.stack([across + (down + 0.5) / side, down + (side - across - 0.5) / side], axis=1)
         fine = self._view((coarse.pixels[chosen][:, None] + shares / side - 0.5).reshape(-1, 2))
-        light = self._light(fine, np.repeat(chosen, side * side), sparse)
+        light = self._light(fine, np.repeat(chosen, side * side))
         colors = self._with_glyphs(self._colors(fine, light), fine) if has_glyphs else self._colors(fine, light)
         mean: FloatArray = colors.reshape(len(chosen), side * side, 3).mean(axis=1)
         return mean
 
-    def _sparse_light(self, view: _Viewpoint) -> _SparseLight:
-        """Light of every other pixel of every other row: it changes slowly over a surface."""
+    def _sparse_light(self, view: _Viewpoint) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Mesh, normal and light of every other pixel of every other row: light changes slowly over a surface."""
         chosen = np.arange(len(view.pixels)).reshape(self.shape)[::_SPARSE, ::_SPARSE]
         mesh, normals = view.hits.mesh[chosen], view.normals[chosen]
-        return _SparseLight(mesh, normals, self.sky.of_picture(view.points[chosen], normals, mesh))
+        return mesh, normals, self.sky.of_picture(view.points(chosen), normals, mesh)
 
-    def _light(self, view: _Viewpoint, pixel: IntArray, sparse: _SparseLight) -> FloatArray:
+    def _light(self, view: _Viewpoint, pixel: IntArray) -> FloatArray:
         """Light of the nearest of the sparse pixels that shows the same surface; rays of its own for what none shows.
 
         Args:
             view: What is seen, through n rays.
             pixel: Number of the pixel of each ray, row by row, shape (n,).
-            sparse: What there is.
         """
         light = np.ones(len(pixel))
         left = np.flatnonzero(view.hits.met)
         row, column = np.divmod(pixel, self.shape[1])
-        rows, columns = sparse.mesh.shape
-        for down, right in ((0, 0), (0, 1), (1, 0), (1, 1), (0, -1), (-1, 0), (-1, 1), (1, -1), (-1, -1)):
-            near_row = np.clip(row[left] // _SPARSE + down, 0, rows - 1)
-            near = (near_row, np.clip(column[left] // _SPARSE + right, 0, columns - 1))
-            cosine = np.einsum("ij,ij->i", view.normals[left], sparse.normals[near])
-            alike = (view.hits.mesh[left] == sparse.mesh[near]) & (cosine > SAME_SURFACE_COSINE)
-            light[left[alike]] = sparse.light[near][alike]
+        mesh, normals, shares = self.sparse
+        rows, columns = mesh.shape
+        for down, right in product((0, 1, -1), repeat=2):
+            places = (
+                (row[left] // _SPARSE + down).clip(0, rows - 1),
+                (column[left] // _SPARSE + right).clip(0, columns - 1),
+            )
+            cosine = np.einsum("ij,ij->i", view.normals[left], normals[places])
+            alike = (view.hits.mesh[left] == mesh[places]) & (cosine > SAME_SURFACE_COSINE)
+            light[left[alike]] = shares[places][alike]
             left = left[~alike]
-        light[left] = self.sky.open_share(view.points[left], view.normals[left], left % len(self.sky.sets))
+        light[left] = self.sky.open_share(view.points(left), view.normals[left], left % len(self.sky.sets))
         return light
 
     def _with_glyphs(self, colors: FloatArray, view: _Viewpoint) -> FloatArray:
@@ -395,6 +377,14 @@ class _Painter:
         return colors
 
 
+def _looks(mesh: PosedMesh) -> FloatArray:
+    """Linear colour and opacity of every face without its texture, shape (F, 4)."""
+    appearance = mesh.appearance or plain((*mesh.color.tolist(), 1.0), len(mesh.faces))
+    painted = np.array([material.color for material in appearance.materials])
+    looks = np.column_stack([linear_of(painted[:, :3]) * mesh.shade, painted[:, 3]])
+    return looks[appearance.material_of_face]
+
+
 def _swollen(mesh: PosedMesh, distance: float) -> tuple[FloatArray, IntArray]:
     """A mesh whose surface lies farther out [m]."""
     return mesh.vertices + distance * vertex_normals(mesh.vertices, mesh.faces), mesh.faces
@@ -410,6 +400,7 @@ SAME_SURFACE_COSINE = 0.94
 """Places of one mesh whose normals differ less (20 deg) share light."""
 _TILE = 4  # places per side of the square over which light is averaged; each pixel of it has its own directions
 _FLOOR_RAYS = 16  # of each cell; a tile is averaged
+_FLOOR_FINE = 8  # places of the smooth map along a cell
 _FLOOR_REACH = 0.6  # of the scene's size
 _FLOOR_ROOM = 0.4  # of the scene's size: how far the map of the shadow reaches beyond the object
 _FLOOR_FADE = 0.5  # of the map's half width: the shadow fades to nothing over this distance
@@ -471,21 +462,18 @@ def _even_directions(count: int) -> FloatArray:
 
 def _average_on_surface(values: FloatArray, mesh: IntArray, normals: FloatArray) -> FloatArray:
     """Mean over a tile around each pixel of those that show the same mesh with a like normal, shape (h, w)."""
-    total, weight = values.copy(), np.ones_like(values)
-    offsets = range(-(_TILE // 2), _TILE - _TILE // 2)
-    for down, right in ((down, right) for down in offsets for right in offsets if down or right):
-        here = (_span(values.shape[0], down), _span(values.shape[1], right))
-        there = (_span(values.shape[0], -down), _span(values.shape[1], -right))
-        cosine = np.einsum("ijk,ijk->ij", normals[here], normals[there])
-        alike = (mesh[here] == mesh[there]) & (cosine > SAME_SURFACE_COSINE)
-        total[here] += alike * values[there]
-        weight[here] += alike
-    return total / weight
-
-
-def _span(size: int, offset: int) -> slice:
-    """Indices i for which i and i - offset are both in range."""
-    return slice(max(offset, 0), size + min(offset, 0))
+    total, weight = np.zeros_like(values), np.zeros_like(values)
+    height, width = mesh.shape
+    margins = ((_TILE // 2, _TILE // 2),) * 2
+    all_values, all_mesh = np.pad(values, margins), np.pad(mesh, margins)
+    all_normals = np.pad(normals, (*margins, (0, 0)))  # no direction is like none
+    for down, right in np.ndindex(_TILE, _TILE):
+        there = np.s_[down + 1 : down + 1 + height, right + 1 : right + 1 + width]
+        cosine = np.einsum("ijk,ijk->ij", normals, all_normals[there])
+        alike = (mesh == all_mesh[there]) & (cosine > SAME_SURFACE_COSINE)
+        total += alike * all_values[there]
+        weight += alike
+    return np.where(weight > 0.0, total / np.maximum(weight, 1.0), values)
 
 
 class FloorShadow:
@@ -493,20 +481,20 @@ class FloorShadow:
 
     def __init__(self, scene: RayScene, cells: int) -> None:
         room = _FLOOR_ROOM * scene.size
-        self.low = scene.bounds[0, :2] - room
-        self.step = (scene.bounds[1, :2] + room - self.low) / (cells - 1)
+        self.low, self.high = scene.bounds[0, :2] - room, scene.bounds[1, :2] + room
         # A little lower than the lowest point: an object that stands on the plane would hide its own shadow.
         self.height = scene.bounds[0, 2] - 2e-3 * scene.size
         self.map = self._hidden_share(scene, cells)
 
     def _hidden_share(self, scene: RayScene, cells: int) -> FloatArray:
-        """Share of the sky that the scene hides from each cell, fading to zero at the border, shape (cells, cells)."""
-        x, y = np.meshgrid(*(self.low[k] + self.step[k] * np.arange(cells) for k in range(2)), indexing="ij")
+        """Share of the sky that the scene hides from places, fading to zero at the border, a square array."""
+        x, y = np.meshgrid(*np.linspace(self.low, self.high, cells).T, indexing="ij")
         points, up = np.stack([x, y, np.full_like(x, self.height)], axis=2), np.tile([0.0, 0.0, 1.0], (*x.shape, 1))
         share = 1.0 - SkyLight(scene, _FLOOR_RAYS, _FLOOR_REACH).of_picture(points, up, np.zeros(x.shape, dtype=int))
-        from_middle = np.linspace(-1.0, 1.0, cells)
-        radius = np.hypot(from_middle[:, None], from_middle)
-        faded: FloatArray = gaussian_filter(share, 1.0) * _smooth_step((1.0 - radius) / _FLOOR_FADE)
+        places = np.linspace(-1.0, 1.0, _FLOOR_FINE * cells)
+        near = np.exp(-((0.35 * cells * np.subtract.outer(places, np.linspace(-1.0, 1.0, cells))) ** 2))
+        near /= near.sum(axis=1, keepdims=True)
+        faded: FloatArray = near @ share @ near.T * _smooth_step((1.0 - np.hypot.outer(places, places)) / _FLOOR_FADE)
         return faded
 
     def seen(self, origins: FloatArray, directions: FloatArray, pixels: FloatArray, camera: Camera) -> FloatArray:
@@ -521,7 +509,8 @@ class FloorShadow:
         down = directions[:, 2] < -1e-6
         distance = (self.height - origins[..., 2]) / np.where(down, directions[:, 2], -1.0)
         spots = origins[..., :2] + distance[:, None] * directions[:, :2]
-        dark = map_coordinates(self.map, ((spots - self.low) / self.step).T, order=1, cval=0.0)
+        place = (spots - self.low) / (self.high - self.low) * (len(self.map) - 1)
+        dark = self.map[tuple(np.rint(place.clip(0.0, len(self.map) - 1)).astype(np.int64).T)]
         inside = np.minimum(pixels, np.array([camera.width, camera.height]) - pixels).min(axis=1)
         share: FloatArray = np.where(down & (distance > 0.0), dark, 0.0) * _smooth_step(inside / _BORDER)
         return share
