@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -85,6 +85,8 @@ class Sweeper:
         """Keep what is shared by all joints."""
         self._scene, self._overlap, self._allowance = scene, overlap, allowance
         self._way = lru_cache(maxsize=2)(self._way_to_end)  # one joint's pairs are asked about in a row
+        # What a pair meets within the declared range on the way to one side, by joint, pair and sign.
+        self.meeting = cache(self._within)
 
     @classmethod
     def of(cls, scene: Scene) -> Sweeper:
@@ -92,21 +94,17 @@ class Sweeper:
         overlap = OverlapQueries(scene)
         return cls(scene, overlap, DepthAllowance(scene, overlap))
 
-    def sweep(self, leader: int) -> JointSweep:
-        """Move one joint to both sides."""
+    def sweep(self, leader: int, *, far: bool = True) -> JointSweep:
+        """Move one joint to both sides, beyond its range only if `far` or if it is blocked within."""
         travel = self._scene.travels[leader]
         own = frozenset(
             connection.pair
             for connection in self._scene.connections
             if self._leads(leader, connection.joints) and leader in self._scene.between(connection.pair)
         )
-        low, high = (self._side(leader, sign, own) for sign in (-1.0, 1.0))
+        far = far or any(self.meeting(leader, pair, sign) for sign in (-1.0, 1.0) for pair in own)
+        low, high = (self._side(leader, sign, own, far=far) for sign in (-1.0, 1.0))
         return JointSweep(leader=leader, travel=travel, own=own, sides=(low, high))
-
-    def meeting(self, leader: int, pair: Pair, sign: float) -> Meeting | None:
-        """Return what one pair meets within the declared range on the way to one side, as in `sweep`."""
-        values, poses = self._way(leader, sign)
-        return self._within(leader, pair, values, relative(poses, pair))
 
     def free_end(self, leader: int, sign: float) -> float:
         """Value within the declared range on one side of rest up to which no pair meets [rad or m]."""
@@ -124,17 +122,17 @@ class Sweeper:
         names = self._scene.mechanism.joints
         return any(abs(self._scene.mechanism.leads[names.index(name), leader]) > 0.0 for name in joints)
 
-    def _side(self, leader: int, sign: float, own: frozenset[Pair]) -> SweepSide:
-        travel, scene = self._scene.travels[leader], self._scene
-        values, poses = self._way(leader, sign)
-        found = {pair: self._within(leader, pair, values, relative(poses, pair)) for pair in scene.affected[leader]}
-        beyond = self._to(leader, float(values[-1]), self._far_end(travel, sign), sign)
-        for pair in own:
+    def _side(self, leader: int, sign: float, own: frozenset[Pair], *, far: bool) -> SweepSide:
+        travel, values = self._scene.travels[leader], self._way(leader, sign)[0]
+        end = float(values[-1])
+        found = {pair: self.meeting(leader, pair, sign) for pair in self._scene.affected[leader]}
+        beyond = self._to(leader, end, self._far_end(travel, sign) if far else end, sign)
+        for pair in own if far else ():
             found[pair] = found[pair] or self._outside(leader, pair, values, beyond)
         meetings = sorted((m for m in found.values() if m is not None), key=lambda item: abs(item.first - travel.rest))
         return SweepSide(
             sign=sign,
-            declared=float(values[-1]),
+            declared=end,
             reached=float(beyond[-1]),
             meetings=tuple(meetings),
             gaps=tuple(gap for pair in sorted(own) for gap in self.widest(leader, pair, sign)),
@@ -175,8 +173,10 @@ class Sweeper:
         wanted = int(np.ceil(longest / (settings.step * scene.size)))
         return min(max(wanted, settings.samples_least), settings.samples_most)
 
-    def _within(self, leader: int, pair: Pair, values: FloatArray, T: FloatArray) -> Meeting | None:
+    def _within(self, leader: int, pair: Pair, sign: float) -> Meeting | None:
         """Where and how deep a pair meets beyond what it is allowed on its way."""
+        values, poses = self._way(leader, sign)
+        T = relative(poses, pair)
         if not boxes_meet(*self._overlap.solids(pair), T).any():
             return None
         hit = self._overlap.collide(pair, T)

@@ -118,7 +118,10 @@ class Simulator:
         self._sweeps: dict[tuple[tuple[object, ...], int], JointSweep] = {}
 
     def judge(self, model: KinematicModel, child: str | None = None) -> MotionVerdict:
-        """Judge a whole plan, or the joint above one part by its motion alone; a fixed joint has nothing to say."""
+        """Judge a whole plan, or the joint above one part by its motion alone; a fixed joint has nothing to say.
+
+        What lies beyond a range only matters where a joint is blocked within it.
+        """
         look = GeometryContext(self._scene(model))
         found = _findings(checks_of("KV30"), look) if child is None else []
         travels = [
@@ -129,7 +132,7 @@ class Simulator:
         # Another joint may have become fixed or free: the same motion under another number.
         keys = [(_key(model, name), leader) for leader, name in travels]
         new = [key for key in keys if key not in self._sweeps]
-        self._sweeps |= zip(new, each(lambda key: look.sweeper.sweep(key[1]), new), strict=True)
+        self._sweeps |= zip(new, each(lambda key: look.sweeper.sweep(key[1], far=False), new), strict=True)
         summaries: list[JointSummary] = []
         for (_, name), key in zip(travels, keys, strict=True):
             sweep = self._sweeps[key]

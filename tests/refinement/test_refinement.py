@@ -306,7 +306,10 @@ def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
 
 
 def test_collision_geometry_is_cut_by_what_simulation_moved() -> None:
-    """As it is where nothing was moved yet, but for rounding; what was free is not asked again; others are."""
+    """As it is where nothing was moved yet, but for rounding; what was free is not asked again; others are.
+
+    What moves freely was not moved beyond its range.
+    """
     bad = askew()
     moved = {sweep.travel.joint: sweep for sweep in Simulator(bad.model, SETTINGS.geometry).judge(bad.model).sweeps}
     free = {
@@ -323,4 +326,5 @@ def test_collision_geometry_is_cut_by_what_simulation_moved() -> None:
     assert not blind["blocked"]
     right = loop.repaired(inferred("drawer"))
     assert set(right.swept) == {joint.name for joint in right.model.joints if joint.kind is not JointType.FIXED}
+    assert all(side.reached == side.declared for sweep in right.swept.values() for side in sweep.sides)
     assert not with_joint(right, "drawer", upper=0.1).swept
