@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from kinematify.geometry.surface import FACETED
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import ContactConfig
@@ -186,9 +186,7 @@ def motions_between(first: FloatArray, second: FloatArray, *, tolerance: float) 
     tree = cKDTree(second)
     found: list[tuple[float, RigidMotion]] = []
     for start in _starts(first, second):
-        if tree.query(start.points(first))[0].mean() > _START * tolerance:
-            continue
-        motion, distance = matched(first, second, tree, start)
+        motion, distance = matched(first, second, tree, start, tolerance)
         if distance <= tolerance:
             found.append((distance, motion))
     kept: list[RigidMotion] = []
@@ -198,29 +196,35 @@ def motions_between(first: FloatArray, second: FloatArray, *, tolerance: float) 
     return kept
 
 
-def _starts(first: FloatArray, second: FloatArray) -> list[RigidMotion]:
+def _starts(first: FloatArray, second: FloatArray) -> Iterator[RigidMotion]:
     middles = first.mean(axis=0), second.mean(axis=0)
     axes = [_principal_axes(cloud - middle) for cloud, middle in zip((first, second), middles, strict=True)]
-    starts = []
     for order, signs in _ALIGNMENTS:
         turn = (axes[1][:, order] * signs) @ axes[0].T
-        starts.append(RigidMotion(turn=turn, shift=middles[1] - turn @ middles[0]))
-    return starts
+        yield RigidMotion(turn=turn, shift=middles[1] - turn @ middles[0])
 
 
-def matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: RigidMotion) -> tuple[RigidMotion, float]:
-    """Match nearest points until they stay, mirrored or not as at the start; and their mean distance [m]."""
-    sign, one, found = np.sign(np.linalg.det(motion.turn)), first.mean(axis=0), np.empty(0)
-    for _ in range(_ROUNDS):
+def matched(
+    first: FloatArray, second: FloatArray, tree: cKDTree, motion: RigidMotion, tolerance: float
+) -> tuple[RigidMotion, float]:
+    """Match nearest points until they stay, mirrored or not as at the start; and their mean distance [m].
+
+    A round brings less than the one before it: what does not come within the tolerance [m] like that is given up.
+    """
+    sign, one, found, before = np.sign(np.linalg.det(motion.turn)), first.mean(axis=0), np.empty(0), _START * tolerance
+    for rounds in range(_ROUNDS, 0, -1):
         distances, index = tree.query(motion.points(first))
-        if np.array_equal(index, found):  # the same points give the same motion again
-            return motion, float(distances.mean())
+        apart = float(distances.mean())
+        # The same points give the same motion again.
+        if np.array_equal(index, found) or apart - rounds * (before - apart) > tolerance:
+            return motion, apart
+        before = apart
         found, nearest, other = index, second[index], second[index].mean(axis=0)
         left, _, right = np.linalg.svd((nearest - other).T @ (first - one))
         flip = np.array([1.0, 1.0, sign * np.sign(np.linalg.det(left @ right))])
         turn = (left * flip) @ right
         motion = RigidMotion(turn=turn, shift=other - turn @ one)
-    return motion, float(tree.query(motion.points(first))[0].mean())
+    return motion, apart
 
 
 def _agreement(one: RigidMotion, other: RigidMotion) -> float:

@@ -53,8 +53,9 @@ def _exact(motion: RigidMotion, one: FloatArray, other: FloatArray) -> RigidMoti
     """The motion after the vertices of a copy are matched, where that brings them closer than samples can."""
     if len(one) != len(other) or len(one) > _VERTICES:
         return motion
-    finer, apart = matched(one, other, cKDTree(other), motion)
-    return finer if apart < TOLERANCE * float(np.linalg.norm(np.ptp(other, axis=0))) else motion
+    tolerance = TOLERANCE * float(np.linalg.norm(np.ptp(other, axis=0)))
+    finer, apart = matched(one, other, cKDTree(other), motion, tolerance)
+    return finer if apart < tolerance else motion
 
 
 def _centre(graph: ContactGraph, joint: JointEstimate) -> FloatArray:

