@@ -25,7 +25,6 @@ from kinematify.joints.bearings.scores import (
     EdgeBearing,
     best_distinct,
     fit_rail,
-    line_support,
     scored_line,
     scored_lines,
     surface_support,
@@ -197,7 +196,7 @@ def _turned_lines(
         line = _own_axis(side, config, rng)
         if line is None:
             continue
-        support = line_support(side, line, config)
+        support = float(surface_support(side, lines_of([line]), config)[0])
         arm = side.points - line.point
         height = float(np.ptp(arm @ line.axis))
         width = 2 * float(lengths_of(crossed(arm, line.axis)).max())

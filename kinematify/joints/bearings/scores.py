@@ -145,11 +145,6 @@ def surface_support(side: BearingSide, lines: Lines, config: BearingConfig) -> F
     return np.asarray(np.clip(np.concatenate([*blocks, np.empty(0)]), 0.0, 1.0))
 
 
-def line_support(side: BearingSide, line: Line, config: BearingConfig) -> float:
-    """`surface_support` of a single line."""
-    return float(surface_support(side, lines_of([line]), config)[0])
-
-
 def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> FloatArray:
     u, p = lines.axes, lines.points
     e1, e2 = across_axes(u)
