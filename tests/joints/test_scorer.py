@@ -90,8 +90,9 @@ def test_the_choice_is_the_first_alternative() -> None:
     assert 0.0 < judged.confidence <= 1.0
 
 
-def test_what_models_say_together_is_surer_than_their_mean() -> None:
-    judged = judge(first_features("edge_door"), CONFIG.joints.confidence)
-    kinds, axes, best = judged.hypotheses.kinds, judged.hypotheses.axes, judged.best
-    agree = (kinds == kinds[best]) & (np.abs(axes @ axes[best]) > np.cos(np.radians(5.0)))
-    assert 0.5 < judged.posterior[agree].sum() < judged.confidence
+def test_the_choice_is_surer_than_the_mean_of_the_models() -> None:
+    """Where the cues have no lead, all odds grow by one power."""
+    config = CONFIG.joints.confidence.model_copy(update={"cues_lead": 0.0})
+    judged = judge(first_features("edge_door"), config)
+    before, now = (np.sort(likely)[-2:] for likely in (judged.prior, judged.posterior))
+    assert np.log(now[1] / now[0]) > 1.2 * np.log(before[1] / before[0]) > 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -28,7 +28,7 @@ _SAME_COSINE = float(np.cos(np.radians(5.0)))
 _SAME_LINE = 0.02
 _ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
 _DISTANCE = 0.05  # of the child's diagonal, the same for a line
-_SURER = 1.33  # power of what the models say together: each errs where others do not, and their mean is too unsure
+_SURER = 1.33  # power of what the models say: each errs where others do not, and their mean is too unsure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,11 +51,11 @@ class Posterior:
 
     @cached_property
     def posterior(self) -> FloatArray:
-        """Probabilities after the lead that what cues would choose has, shape (h,).
+        """Probabilities after the power and the lead that what cues would choose has, shape (h,).
 
         On what neither has seen, cues are right more often where the fit is not clearly surer (`results/choice.md`).
         """
-        led = self.prior * np.exp(self.prior_log_odds * self._same[self.by_cues])
+        led = self.prior**_SURER * np.exp(self.prior_log_odds * self._same[self.by_cues])
         return np.asarray(led / led.sum())
 
     @cached_property
@@ -117,13 +117,12 @@ class Posterior:
     @property
     def confidence(self) -> float:
         """Return how likely type and direction are right: of all hypotheses that agree with the best one in both."""
-        surer = replace(self, prior=self.prior**_SURER).posterior
-        return float(min(surer[self._agree[self.best]].sum(), 1.0))
+        return float(min(self.posterior[self._agree[self.best]].sum(), 1.0))
 
     @property
     def odds_prismatic(self) -> float:
-        """Log odds of sliding against turning."""
-        slide, turn = (max(self.posterior[self.hypotheses.kinds == kind].sum(), 1e-9) for kind in (SLIDE, TURN))
+        """Log odds of sliding against turning, before power and lead."""
+        slide, turn = (max(self.prior[self.hypotheses.kinds == kind].sum(), 1e-9) for kind in (SLIDE, TURN))
         return float(np.log(slide / turn))
 
     def alternatives(self, count: int) -> tuple[JointCandidate, ...]:
