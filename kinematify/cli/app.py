@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import sys
 import traceback
@@ -43,7 +44,9 @@ COMMANDS = {
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and end the process with the exit status."""
     keep_memory()
-    sys.exit(run(arguments))
+    status = run(arguments)
+    gc.freeze()  # what is left goes with the process: to collect it takes a fifth of a second
+    sys.exit(status)
 
 
 def run(arguments: Sequence[str] | None = None) -> int:

@@ -192,7 +192,7 @@ def _directions(count: int) -> FloatArray:
 
 def signed_volume(vertices: FloatArray, faces: IntArray) -> float:
     """Enclosed volume [m^3], positive where faces look outward; meaningless for open meshes."""
-    a, b, c = (vertices[faces[:, k]] - vertices.mean(axis=0) for k in range(3))
+    a, b, c = (vertices - vertices.mean(axis=0))[faces.T]
     return float(np.einsum("ij,ij->", a, crossed(b, c)) / 6.0)
 
 
