@@ -52,7 +52,13 @@ def breadth_first_tree(
     queue = [root]
     costs = virtual_costs(centroids, forbidden=forbidden)
     while True:
-        _spread(queue, contacts, centroids, visited, parents)
+        for node in queue:  # which grows on the way
+            reach = np.linalg.norm(centroids[contacts[node]] - centroids[node], axis=1) if contacts[node] else []
+            for index in np.argsort(reach, kind="stable"):
+                other = contacts[node][int(index)]
+                if not visited[other]:
+                    visited[other], parents[other] = True, node
+                    queue.append(other)
         if all(visited):
             return tuple(parents)
         parent, child = nearest_pair(costs, visited)
@@ -101,18 +107,6 @@ def parents_from(edges: Sequence[Pair], n: int, root: int) -> list[int]:
     matrix = csr_matrix((np.ones(len(edges)), (rows, columns)), shape=(n, n))
     _, previous = breadth_first_order(matrix, root, directed=False)
     return [max(int(item), -1) for item in previous]
-
-
-def _spread(
-    queue: list[int], contacts: list[list[int]], centroids: FloatArray, visited: list[bool], parents: list[int]
-) -> None:
-    for node in queue:
-        reach = np.linalg.norm(centroids[contacts[node]] - centroids[node], axis=1) if contacts[node] else []
-        for index in np.argsort(reach, kind="stable"):
-            other = contacts[node][int(index)]
-            if not visited[other]:
-                visited[other], parents[other] = True, node
-                queue.append(other)
 
 
 Action = tuple[int, int]
@@ -297,8 +291,7 @@ class TreeSearch:
         for node in reversed(path):
             node.visits += 1
             node.total += value
-            if not node.untried and all(self.nodes[key].closed for _, key in node.tried):
-                node.closed = True
+            node.closed |= not node.untried and all(self.nodes[key].closed for _, key in node.tried)
 
     def _judge(self, parents: Parents) -> float:
         if parents not in self.rewards:
@@ -311,20 +304,12 @@ def rollout(state: SearchState, priority: Mapping[Action, float]) -> None:
     heap = [(-priority[action], action) for action in state.actions() if action in priority]
     heapq.heapify(heap)
     while not state.complete:
-        action = _pop_feasible(heap, state)
-        if action is None:
-            action = state.actions()[0]
+        while heap and state.visited[heap[0][1][1]]:
+            heapq.heappop(heap)
+        action = heapq.heappop(heap)[1] if heap else state.actions()[0]
         for part in state.apply(action):
             for further in state.frontier_of(part):
                 heapq.heappush(heap, (-priority[further], further))
-
-
-def _pop_feasible(heap: list[tuple[float, Action]], state: SearchState) -> Action | None:
-    while heap:
-        _, action = heapq.heappop(heap)
-        if not state.visited[action[1]]:
-            return action
-    return None
 
 
 def search_trees(

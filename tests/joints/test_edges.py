@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from benchmarks.fit.edges import (
     TreeExample,
+    base_recipe_key,
     edge_recipe_key,
     fit_edges,
     missed_edges,
@@ -34,14 +35,16 @@ from kinematify.joints.choice.edges import (
     MEASUREMENTS,
     edge_measurements,
     edge_probabilities,
-    shipped_edge_weights,
+    shipped_weights,
 )
 from kinematify.joints.features.pins import EdgePins
 from kinematify.pipeline.infer_assembly import infer
+from kinematify.topology.base_link import BASE_WEIGHTS, COLUMNS
 from tests.joints.joint_scenes import clock
 from tests.known import known_object
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 
@@ -141,8 +144,23 @@ def test_a_small_fit_finds_its_own_trees_and_is_written_and_read(
     np.testing.assert_allclose(read.weights, weights.weights, atol=1e-6)
 
 
-def test_the_weights_are_of_the_recipe() -> None:
-    assert shipped_edge_weights().provenance["recipe"] == edge_recipe_key()
+@pytest.mark.parametrize(
+    ("file", "columns", "recipe"),
+    [(edges.EDGE_WEIGHTS, MEASUREMENTS, edge_recipe_key), (BASE_WEIGHTS, COLUMNS, base_recipe_key)],
+)
+def test_the_weights_name_their_recipe_and_what_they_are_of(
+    file: str, columns: tuple[str, ...], recipe: Callable[[], str]
+) -> None:
+    """Names of real objects, none of a judge; a column more, or in another place, is refused."""
+    shipped = shipped_weights(file, columns)
+    assert shipped.provenance["recipe"] == recipe()
+    assert len(shipped.weights) == len(columns)
+    assert not [
+        name for name in shipped.provenance["real"] if name.partition("/")[0] in {"kitchen", "kinart", "everyday"}
+    ]
+    for others in ((*columns, "another"), columns[::-1]):
+        with pytest.raises(EnvironmentFault, match=r"benchmarks\.fit\.edge_fit"):
+            shipped_weights(file, others)
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"weights": {"bearing": 1.0}}'])

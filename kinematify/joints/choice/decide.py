@@ -12,6 +12,7 @@ from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import JointEstimate, JointLine, JointType
 from kinematify.joints.choice.judge import agreed, judge
 from kinematify.joints.choice.limits import find_range
+from kinematify.joints.choice.opening import round_odds
 from kinematify.joints.features.columns import features_of
 from kinematify.joints.features.edge_scene import TreeScenes
 from kinematify.joints.features.workspace import PartCache
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
+    from kinematify.joints.candidate import JointCandidate
     from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.features.columns import Features
     from kinematify.joints.features.edge_scene import JointScene
@@ -67,27 +69,32 @@ def estimate_joints(
             likely = agreed([item.hypotheses.kinds for item in judged], [item.prior for item in judged])
             fixed = float(np.mean([item.fixed for item in judged]))
             judged = [replace(item, prior=given, fixed=fixed) for item, given in zip(judged, likely, strict=True)]
-        return [with_exact_lines(assembly, _estimate(*item)) for item in zip(found, judged, strict=True)]
+        chosen = [(one, it, it.alternatives(config.alternatives)) for one, it in zip(found, judged, strict=True)]
+        rounds = [
+            round_odds(one.scene, best.axis, best.pivot)
+            for one, it, (best, *_) in chosen
+            if best.kind.turns and it.fixed <= config.confidence.fixed
+        ]
+        odds = float(np.mean(rounds or [0.0]))
+        return [with_exact_lines(assembly, _estimate(*item, odds)) for item in chosen]
 
     found = each(joints_of, graph.alike.edges(tree))
     estimates = {(joint.parent, joint.child): joint for joints in found for joint in joints}
     return tuple(estimates[edge] for edge in tree.edges())
 
 
-def _estimate(features: Features, judged: Posterior) -> JointEstimate:
-    scene, config = features.scene, features.scene.config
-    fixed = judged.fixed > config.confidence.fixed
-    kind = JointType.FIXED if fixed else judged.kind(judged.best)
-    axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
-    found = find_range(scene, kind, axis, pivot)
+def _estimate(features: Features, judged: Posterior, options: tuple[JointCandidate, ...], odds: float) -> JointEstimate:
+    scene, best = features.scene, options[0]
+    fixed = judged.fixed > scene.config.confidence.fixed
+    found = find_range(scene, JointType.FIXED if fixed else best.kind, best.axis, best.pivot, odds)
     return JointEstimate(
         parent=scene.parent,
         child=scene.child,
-        axis=found.sign * axis,
-        pivot=pivot,
+        axis=found.sign * best.axis,
+        pivot=best.pivot,
         **found.facts,
         confidence=judged.fixed if fixed else judged.confidence,
-        alternatives=judged.alternatives(config.alternatives),
+        alternatives=options,
         evidence={
             **features.type_cues,
             "odds_prismatic": judged.odds_prismatic,

@@ -61,7 +61,7 @@ def edge_qualities(
     Raises:
         EnvironmentFault: The weights are missing, damaged or of another version.
     """
-    scores = shipped_edge_weights().scores(edge_measurements(graph, stats, bearings, pins))
+    scores = shipped_weights(EDGE_WEIGHTS, MEASUREMENTS).scores(edge_measurements(graph, stats, bearings, pins))
     qualities = 1.0 / (1.0 + np.exp(-scores / _SOFT))
     return dict(zip(graph.by_pair, qualities.tolist(), strict=True))
 
@@ -170,11 +170,6 @@ def _line(one: _Side, other: _Side, bounds: FloatArray) -> tuple[float, float]:
     aside -= (aside @ along) * along
     length = np.sqrt(12.0 * max(spread[2], 0.0)) / (np.abs(along) @ extents)
     return min(float(length), 1.0), min(float(2.0 * (aside @ aside) / (np.abs(aside) @ extents + 1e-300)), 1.0)
-
-
-def shipped_edge_weights() -> LinearWeights:
-    """The weights of edges that come with the package; raises as `shipped_weights`."""
-    return shipped_weights(EDGE_WEIGHTS, MEASUREMENTS)
 
 
 @cache

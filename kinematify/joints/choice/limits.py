@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.joints.choice.opening import clockwise_sign, is_continuous, turn_sign
+from kinematify.joints.choice.opening import clockwise_sign, round_odds, turn_sign
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import Sweep, moving_points, slide_clearance, slide_paths, turn_paths
 from kinematify.robot.joint_type import JointType
@@ -86,7 +86,13 @@ class Range:
         return {"free_forward": self.free[0].motion, "free_backward": self.free[1].motion}
 
 
-def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: FloatArray) -> Range:
+_FREE = -0.25  # log odds beyond which what meets nothing goes round: right of 51 of 54 that do, 86 of 114 others
+_STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mudguard
+
+
+def find_range(
+    scene: JointScene, kind: JointType, axis: FloatArray, pivot: FloatArray, odds: float | None = None
+) -> Range:
     """Sweep the chosen joint both ways against all parts that do not move with it.
 
     Args:
@@ -94,19 +100,20 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
         kind: Chosen type.
         axis: Unit direction, shape (3,).
         pivot: Point on the axis [m], shape (3,).
+        odds: Log odds that turns which are alike go round; without them, those of this one count.
     """
     if kind is JointType.FIXED:
         none = LimitEnd(0.0, "")
         return Range(kind=kind, sign=1.0, back=none, ahead=none, free=(none, none))
     if kind is JointType.PRISMATIC:
         return _slide_range(scene, axis)
-    return _turn_range(scene, axis, pivot)
+    return _turn_range(scene, axis, pivot, round_odds(scene, axis, pivot) if odds is None else odds)
 
 
-def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Range:
+def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, odds: float) -> Range:
     ways = _free_turn(scene, axis, pivot, (scene.parent, *scene.others))
     free = np.array([way.motion for way in ways])
-    if is_continuous(scene, axis, pivot, free):
+    if odds > (_FREE if free.min() >= np.pi else _STOPPED):
         none, half, sign = LimitEnd(np.inf, ""), LimitEnd(np.pi, ""), clockwise_sign(scene, axis)
         return Range(kind=JointType.CONTINUOUS, sign=sign, back=none, ahead=none, free=(half, half))
     limits = scene.config.limits

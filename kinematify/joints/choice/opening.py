@@ -185,7 +185,7 @@ def opening_odds(scorer: Scorer, sides: Mapping[str, FloatArray]) -> float:
         sides: Name -> value towards either side, shape (2,) each.
     """
     forward, backward = scorer.sums(side_columns(sides, scorer.measurements))
-    return float(forward - backward) / scorer.temperature
+    return float(forward - backward)
 
 
 def side_columns(sides: Mapping[str, FloatArray], names: Sequence[str]) -> NDArray[Any]:
@@ -196,25 +196,19 @@ def side_columns(sides: Mapping[str, FloatArray], names: Sequence[str]) -> NDArr
     return np.concatenate([ahead, mean], axis=1)
 
 
-_FREE = -0.25  # log odds beyond which what meets nothing goes round: right of 51 of 54 that do, 86 of 114 others
-_STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mudguard
-
-
-def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
-    """True if a turn has no end: wheels, knobs and propellers, but not links in series, of which each has its stops.
+def round_odds(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
+    """Log odds that a turn has no end, as of wheels, knobs and propellers; -inf of links in series, which have stops.
 
     Args:
         scene: The pair.
         axis: Unit direction, shape (3,).
         pivot: Point on the line [m], shape (3,).
-        free: Free angle towards + and - [rad], shape (2,).
     """
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
-        return False
+        return -np.inf
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
     scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(MeasuredHypotheses(scene, _both_ways(axis, pivot)))
-    odds = float(np.sort(scorer.sums(columns_of(measured, scorer.measurements, 2))).mean()) / scorer.temperature
-    return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
+    return float(scorer.sums(columns_of(measured, scorer.measurements, 2)).mean())
 
 
 def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
@@ -225,8 +219,7 @@ def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
         measured: Name -> values, shape (h,) each.
     """
     scorer = shipped_scorer(RIGID_WEIGHTS)
-    columns = rigid_columns(kinds, measured, scorer.measurements)
-    return float(scorer.sums(columns[None])[0] / scorer.temperature)
+    return float(scorer.sums(rigid_columns(kinds, measured, scorer.measurements)[None])[0])
 
 
 def rigid_columns(kinds: IntArray, measured: Mapping[str, FloatArray], names: Sequence[str]) -> NDArray[Any]:
