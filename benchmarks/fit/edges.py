@@ -198,20 +198,17 @@ def edge_recipe_key() -> str:
 
 def missed_edges(examples: Sequence[TreeExample], weights: LinearWeights) -> int:
     """True edges that the likeliest trees lack, whatever their root."""
-    return sum(_missed(example, weights.scores(example.measured)) for example in examples)
+    found = 0
+    for example in examples:
+        scores = weights.scores(example.measured)
+        likely = {(int(a), int(b)): float(score) for (a, b), score in zip(example.pairs, scores, strict=True)}
+        found += len(_true_edges(example.parents) - set(maximum_spanning_edges(likely, len(example.parents))))
+    return found
 
 
 def wrong_bases(examples: Sequence[TreeExample], weights: LinearWeights) -> int:
     """Objects whose likeliest base link, the true tree given, is not theirs."""
     return sum(example.parents[int(weights.scores(example.standing).argmax())] >= 0 for example in examples)
-
-
-def _missed(example: TreeExample, scores: FloatArray) -> int:
-    """The same of one object."""
-    n = len(example.parents)
-    weights = {(int(a), int(b)): float(score) for (a, b), score in zip(example.pairs, scores, strict=True)}
-    found = maximum_spanning_edges(weights, n) if weights else ()
-    return len(_true_edges(example.parents) - set(found))
 
 
 # ---- files ---------------------------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import shortest_path
+from scipy.special import softmax
 
 from kinematify.joints.choice.edges import shipped_weights
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 BASE_WEIGHTS = "base.json"
 COLUMNS = (
     "largest", "stands", "of_what_stands", "low", "twin", "encloses", "enclosed", "flat_above", "highest",
-    "bears_what_hangs", "flat_in_the_air", "junction", "under_centre", "in_a_chain",
+    "bears_what_hangs", "flat_in_the_air", "junction", "under_centre", "in_a_chain", "largest_and_highest",
 )  # fmt: skip
 """What `base_columns` measures, each in [0, 1]."""
 _LARGEST = 0.99  # congruent parts differ by rounding
@@ -47,8 +48,7 @@ _ASIDE = 0.02
 def base_probabilities(edges: Collection[Pair], stats: Sequence[PartStats], kind: IntArray) -> FloatArray:
     """Probability of every part to be the base link, shape (n,); arguments as in `base_columns`."""
     scores = shipped_weights(BASE_WEIGHTS, COLUMNS).scores(base_columns(edges, stats, kind))
-    likely = np.exp(scores - scores.max())
-    return np.asarray(np.round(likely / likely.sum(), 9))  # alike parts are equal whatever the rounding
+    return np.asarray(np.round(softmax(scores), 9))  # alike parts are equal whatever the rounding
 
 
 def base_columns(edges: Collection[Pair], stats: Sequence[PartStats], kind: IntArray) -> FloatArray:
@@ -73,10 +73,10 @@ def base_columns(edges: Collection[Pair], stats: Sequence[PartStats], kind: IntA
     stands = low * bottoms
     foot = stands * extents[:, 0] * extents[:, 1]
     high = highest[2] - bounds[:, 1, 2] <= _HIGH * diagonal
+    alone = high & (high.sum() == 1)
+    largest = hulls >= _LARGEST * hulls.max()
     tops = np.where(np.eye(n, dtype=bool), -np.inf, bounds[:, 1, 2]).max(axis=1)
     in_the_air = stands.max() < _LIES
-    flat = bottoms * in_the_air * ~twin
-    hangs = (tops < centres[:, 2]) & in_the_air
 
     common = np.minimum(bounds[:, None, 1], bounds[None, :, 1]) - np.maximum(bounds[:, None, 0], bounds[None, :, 0])
     inside = np.clip((common + 1e-9 * diagonal) / extents, 0.0, 1.0).prod(axis=2) * (1.0 - np.eye(n))
@@ -88,7 +88,7 @@ def base_columns(edges: Collection[Pair], stats: Sequence[PartStats], kind: IntA
     aside = np.maximum(bounds[:, 0, :2] - centre, centre - bounds[:, 1, :2])
     return np.column_stack(
         [
-            hulls >= _LARGEST * hulls.max(),
+            largest,
             stands,
             foot / max(float(foot.sum()), 1e-9 * diagonal**2),
             low,
@@ -96,12 +96,13 @@ def base_columns(edges: Collection[Pair], stats: Sequence[PartStats], kind: IntA
             inside.sum(axis=1) / max(n - 1, 1),
             inside.max(axis=0),
             above,
-            high & (high.sum() == 1),
-            above * hangs,
-            flat * np.clip(1.0 + np.log10(hulls / hulls.max()) / _DECADES, 0.0, 1.0),
+            alone,
+            above * (tops < centres[:, 2]) * in_the_air,
+            bottoms * in_the_air * ~twin * np.clip(1.0 + np.log10(hulls / hulls.max()) / _DECADES, 0.0, 1.0),
             _junction(steps, twin & (kind == kind[bounds[:, 0, 2].argmin()])),
             np.linalg.norm(np.maximum(aside, 0.0), axis=1) < _ASIDE * diagonal,
             ((steps == 1).sum(axis=1) == 2) & (steps.max() >= _CHAIN),
+            largest & alone,
         ]
     )
 

@@ -151,7 +151,7 @@ def test_a_small_fit_finds_its_own_trees_and_is_written_and_read(
 def test_the_weights_name_their_recipe_and_what_they_are_of(
     file: str, columns: tuple[str, ...], recipe: Callable[[], str]
 ) -> None:
-    """Names of real objects, none of a judge; a column more, or in another place, is refused."""
+    """Names of real objects, none of a judge; other columns are refused."""
     shipped = shipped_weights(file, columns)
     assert shipped.provenance["recipe"] == recipe()
     assert len(shipped.weights) == len(columns)
@@ -161,6 +161,12 @@ def test_the_weights_name_their_recipe_and_what_they_are_of(
     for others in ((*columns, "another"), columns[::-1]):
         with pytest.raises(EnvironmentFault, match=r"benchmarks\.fit\.edge_fit"):
             shipped_weights(file, others)
+
+
+def test_the_weights_of_base_links_name_seed_and_numbers_of_drawn_objects() -> None:
+    facts = shipped_weights(BASE_WEIGHTS, COLUMNS).provenance
+    assert facts["seed"] == 0
+    assert facts["objects"] == len(facts["real"]) + sum(facts["generated"].values())
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"weights": {"bearing": 1.0}}'])
