@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactEdge, ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.bearings.bearing_evidence import BearingSide, Generators, Sides
-    from kinematify.robot.arrays import BoolArray, FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 
 _ALIKE = 1e-6  # areas that differ by less than this share are the same
@@ -109,7 +109,10 @@ def _fitted(
     pair, exchanged = (edge.a, edge.b), _is_larger(surfaces[edge.b].part, surfaces[edge.a].part)
     pair, sides = (pair[::-1], sides[::-1]) if exchanged else (pair, sides)
     centroid = contact_centroid(sides)
-    directions = _directions(surfaces, pair) if config.directed_pairs else np.empty((0, 3))
+    directions = np.empty((0, 3))
+    if config.directed_pairs:
+        # Along which either part is built.
+        directions = distinct_directions(np.concatenate([surfaces[part].main_directions for part in pair]))
     proposals = propose_lines(sides, centroid, directions, config=config, draws=draws)
     lines = _rank(sides, proposals, centroid, directions, config)
     if not lines or lines[0].score < config.turned_score:
@@ -133,11 +136,6 @@ def score_line(surfaces: Sequence[PartSurface], edge: ContactEdge, line: Line, c
     config = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
     sides = contact_sides(surfaces, edge, config=config)
     return scored_line(sides, line, contact_centroid(sides), config)
-
-
-def _directions(surfaces: Sequence[PartSurface], pair: Pair) -> FloatArray:
-    """Along which either part is built, shape (k, 3)."""
-    return distinct_directions(np.concatenate([surfaces[part].main_directions for part in pair]))
 
 
 def _rank(
@@ -193,9 +191,11 @@ def _turned_lines(
     lines = []
     for own, rng in zip(pair, draws, strict=True):
         side = whole_side(surfaces[own], config.turned_samples)
-        line = _own_axis(side, config, rng)
-        if line is None:
+        proposed = normal_pair_lines(side, config.turned_samples, rng)
+        if len(proposed) == 0:
             continue
+        best = int(np.argmax(surface_support(side, proposed, config)))
+        line = refine_line((side, side), proposed[best], _tolerances(config), config)
         support = float(surface_support(side, lines_of([line]), config)[0])
         arm = side.points - line.point
         height = float(np.ptp(arm @ line.axis))
@@ -212,15 +212,6 @@ def _turned_lines(
                 )
             )
     return lines
-
-
-def _own_axis(side: BearingSide, config: BearingConfig, rng: np.random.Generator) -> Line | None:
-    """The line about which a whole part is most nearly a surface of revolution."""
-    lines = normal_pair_lines(side, config.turned_samples, rng)
-    if len(lines) == 0:
-        return None
-    best = int(np.argmax(surface_support(side, lines, config)))
-    return refine_line((side, side), lines[best], _tolerances(config), config)
 
 
 _LEAST_SINE = 0.17  # below 10 deg between two normals their intersection is ill-conditioned
@@ -259,7 +250,7 @@ def propose_lines(
     votes[: sum(n_circles)] = _circle_votes(lines.subset(slice(sum(n_circles))), n_circles[0], config)
     chosen: list[int] = []
     lists = [(area, config.shortlist), (votes, config.shortlist_circles)]
-    lists += [(area * along, config.shortlist_directed) for along in _running_along(lines, directions)]
+    lists += [(area * along, config.shortlist_directed) for along in np.abs(directions @ lines.axes.T) > _ALONG]
     for merit, count in lists:
         order = np.argsort(-merit, kind="stable")
         order = order[merit[order] > 0]
@@ -268,11 +259,6 @@ def propose_lines(
         )
         chosen += order[picked].tolist()
     return lines.subset(list(dict.fromkeys(chosen)))
-
-
-def _running_along(lines: Lines, directions: FloatArray) -> BoolArray:
-    """Which lines run along each direction (k, 3), shape (k, L)."""
-    return np.asarray(np.abs(directions @ lines.axes.T) > _ALONG)
 
 
 def normal_pair_lines(side: BearingSide, count: int, rng: np.random.Generator) -> Lines:

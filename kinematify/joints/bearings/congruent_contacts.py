@@ -146,15 +146,11 @@ class _Voter:
         for own in self.bearing.lines:
             if self.near(own.line, line):
                 return own
-        if not all(len(side.weights) for side in self._sides):
-            return scored_line(self._sides, line, self.centroid, self._config)
-        moved = refine_line(self._sides, line, self._tolerances, self._config)
-        chosen = moved if self.near(moved, line, self._config.twins.slack) else line
-        return scored_line(self._sides, chosen, self.centroid, self._config)
-
-    @property
-    def _tolerances(self) -> FloatArray:
-        return np.full(2, self._config.normal_tolerance_sine)
+        if all(len(side.weights) for side in self._sides):
+            tolerances = np.full(2, self._config.normal_tolerance_sine)
+            moved = refine_line(self._sides, line, tolerances, self._config)
+            line = moved if self.near(moved, line, self._config.twins.slack) else line
+        return scored_line(self._sides, line, self.centroid, self._config)
 
     def near(self, one: Line, other: Line, slack: float = 1.0) -> bool:
         """True if two lines are one at the contact, within `slack` times what keeps lines apart."""

@@ -43,7 +43,8 @@ def refine_lines(
     """
     if len(lines) == 0:
         return lines
-    spread = sample_spread(sides)
+    # Spread of the near samples [m]; it makes steps in position as large as steps in direction.
+    spread = max(float(np.sqrt(sum(side.points.var(0).sum() for side in sides if len(side.points)))), 1e-12)
     free = slice(0 if turning else 2, 4)
     for tolerance in tolerances:
         frames = line_frames(lines.axes)
@@ -61,7 +62,10 @@ def refine_lines(
         steps = np.zeros((len(lines), 4))
         steps[:, free] = -np.linalg.solve(damped[:, free, free], gradient[:, free, None])[..., 0]
         steps *= np.minimum(1.0, _LONGEST_STEP / np.maximum(np.sqrt((steps**2).sum(axis=1)), 1e-12))[:, None]
-        lines = moved_lines(lines, frames, steps, spread=spread)
+        # Two tilts towards the vectors across each line, and two shifts.
+        tilt, shift = (steps[:, k, None] * frames[:, 0] + steps[:, k + 1, None] * frames[:, 1] for k in (0, 2))
+        axes = lines.axes + tilt
+        lines = Lines(axes=axes / lengths_of(axes)[:, None], points=lines.points + spread * shift)
     return lines
 
 
@@ -70,28 +74,9 @@ def refine_line(sides: Sides, line: Line, tolerances: FloatArray, config: Bearin
     return refine_lines(sides, lines_of([line]), tolerances, config)[0]
 
 
-def sample_spread(sides: Sides) -> float:
-    """Spread of the near samples [m]; makes steps in position as large as steps in direction."""
-    return max(float(np.sqrt(sum(side.points.var(0).sum() for side in sides if len(side.points)))), 1e-12)
-
-
 def line_frames(axes: FloatArray) -> FloatArray:
     """Two unit vectors across each axis (L, 3) and the axis, right-handed, shape (L, 3, 3)."""
     return np.stack([*across_axes(axes), axes], axis=1)
-
-
-def moved_lines(lines: Lines, frames: FloatArray, steps: FloatArray, *, spread: float) -> Lines:
-    """Tilt lines towards the vectors across them by steps[:, :2] [rad] and shift them by steps[:, 2:] [spread].
-
-    Args:
-        lines: L lines.
-        frames: From `line_frames`.
-        steps: Shape (L, 4).
-        spread: Unit of the shifts [m].
-    """
-    tilt, shift = (steps[:, k, None] * frames[:, 0] + steps[:, k + 1, None] * frames[:, 1] for k in (0, 2))
-    axes = lines.axes + tilt
-    return Lines(axes=axes / lengths_of(axes)[:, None], points=lines.points + spread * shift)
 
 
 def surface_rows(side: BearingSide, lines: Lines, frames: FloatArray, *, spread: float, tolerance: float) -> Rows:

@@ -212,17 +212,11 @@ def kind_said(name: str) -> int | None:
         word = token.lower()
         if word.removesuffix("s") in _SILENT:
             return None
-        said = _said_of(word, otherwise=said)
+        # It, its singular, or what it ends with ("hingedoor").
+        ends = [known for known in _KIND_OF if len(known) >= _LEAST_END and word.endswith(known)]
+        forms = (word, word.removesuffix("s"), max(ends, key=len, default=""))
+        said = next((_KIND_OF[form] for form in forms if form in _KIND_OF), said)
     return said
-
-
-def _said_of(word: str, *, otherwise: int | None) -> int | None:
-    """Return the number that is said of a word, its singular, or what it ends with ("hingedoor")."""
-    for form in (word, word.removesuffix("s")):
-        if form in _KIND_OF:
-            return _KIND_OF[form]
-    ends = [known for known in _KIND_OF if len(known) >= _LEAST_END and word.endswith(known)]
-    return _KIND_OF[max(ends, key=len)] if ends else otherwise
 
 
 _LEAST = 1.0e-6  # probability of a type, so that one part alone cannot rule a type out for all

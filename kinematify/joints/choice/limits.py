@@ -37,7 +37,7 @@ class LimitEnd(NamedTuple):
     """What ends it there, in words; empty where nothing does."""
 
 
-AS_GIVEN, USUAL, GUIDE = LimitEnd(0.0, "the given pose"), "typical range", "the end of its guide"
+AS_GIVEN, USUAL = LimitEnd(0.0, "the given pose"), "typical range"
 Ways = tuple[LimitEnd, LimitEnd]
 """Along an axis and against it."""
 
@@ -291,17 +291,14 @@ def _slide_range(scene: JointScene, axis: FloatArray) -> Range:
         floor = free_ways(scene, obstacles, swept, limits.pressed_share)[0 if sign > 0 else 1]
         ahead, back = min(floor, _press(scene, way, length)), AS_GIVEN
     else:
-        ahead, back = _ends(scene, way, ways, length)
+        # What leaves upwards is a lid: it lies where it is put, and would fall in if it could go lower. A drawer may
+        # stand open, by as much as its front stands before the body, without its own handle.
+        front = float(np.quantile(scene.samples.points @ way, 0.98) - (scene.parent_samples.points @ way).max())
+        ajar = min(ways[1], LimitEnd(0.0 if float(way @ UP) > 0.9 else max(front, 0.0), "flush with the body"))
+        back = ajar if ajar.motion > limits.ajar * length else AS_GIVEN
+        ahead = min(ways[0], LimitEnd(limits.drawer * length - back.motion, USUAL))
     ahead = max(ahead, LimitEnd(limits.least_slide * scene.diagonal, "the least travel that is kept"))
     return Range(kind=JointType.PRISMATIC, sign=sign, back=back, ahead=ahead, free=ways)
-
-
-def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float) -> Ways:
-    """Ends of a drawer or lid that opens along a direction, ahead and back; `free` likewise."""
-    forward, backward = free
-    ajar = min(backward, LimitEnd(_standing_out(scene, direction), "flush with the body"))
-    ajar = ajar if ajar.motion > scene.config.limits.ajar * length else AS_GIVEN
-    return min(forward, LimitEnd(scene.config.limits.drawer * length - ajar.motion, USUAL)), ajar
 
 
 def _guided(scene: JointScene, direction: FloatArray, free: LimitEnd, length: float) -> LimitEnd:
@@ -310,9 +307,8 @@ def _guided(scene: JointScene, direction: FloatArray, free: LimitEnd, length: fl
     Where no guide is seen, by as much of its own length as drawers travel.
     """
     guided = guided_travel(scene, direction)
-    return min(
-        free, LimitEnd(scene.config.limits.drawer * length, USUAL) if guided is None else LimitEnd(guided, GUIDE)
-    )
+    usual = LimitEnd(scene.config.limits.drawer * length, USUAL)
+    return min(free, usual if guided is None else LimitEnd(guided, "the end of its guide"))
 
 
 def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float) -> bool:
@@ -321,17 +317,6 @@ def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: fl
         return False
     ways = (guided_travel(scene, sign * axis) or 0.0 for sign in (1.0, -1.0))
     return bool(max(min(*pair) for pair in zip(free, ways, strict=True)) > scene.config.guide.runner * length)
-
-
-def _standing_out(scene: JointScene, direction: FloatArray) -> float:
-    """Return how far the front of a drawer stands before the body, without its own handle [m]; 0 if it does not.
-
-    What leaves upwards is a lid: it lies where it is put, and would fall in if it could go lower.
-    """
-    if float(direction @ UP) > 0.9:
-        return 0.0
-    body = scene.parent_samples.points @ direction
-    return max(float(np.quantile(scene.samples.points @ direction, 0.98) - body.max()), 0.0)
 
 
 def _press(scene: JointScene, direction: FloatArray, length: float) -> LimitEnd:

@@ -79,7 +79,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
 
 def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
     """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
-    return unit(m.velocity(point[None])[:, 0], 1e-9 * m.unit)
+    return unit(m.velocity(point), 1e-9 * m.unit)
 
 
 # ---- conventions ---------------------------------------------------------------------------------------------------

@@ -288,18 +288,21 @@ class JointScene:
         """Score of the best bearing line; 0 without one."""
         return self.lines[0].score if self.lines else 0.0
 
+    @property
+    def rail_score(self) -> float:
+        """Score of the contact's rail; 0 without one."""
+        return self.rail.score if self.rail else 0.0
+
     @cached_property
     def rail_lead(self) -> float:
         """Score of the contact's rail over that of its best line; 0 without a rail."""
-        return 0.0 if self.rail is None else self.rail.score / max(self._best_score, 1e-3)
+        return self.rail_score / max(self._best_score, 1e-3)
 
     @cached_property
     def prismatic_score(self) -> float:
         """1 where both sides of the contact are extruded far more clearly than they are round, as on a linear guide."""
         rails = self.config.rails
-        if self.rail is None:
-            return 0.0
-        strong = np.interp(self.rail.score, (rails.score_none, rails.score_full), (0.0, 1.0))
+        strong = np.interp(self.rail_score, (rails.score_none, rails.score_full), (0.0, 1.0))
         return float(strong * np.interp(self.rail_lead, (rails.lead_none, rails.lead_full), (0.0, 1.0)))
 
     @property

@@ -112,12 +112,18 @@ def box_frame(
         The first preferred frame whose box is at most `volume_slack` larger than the smallest, else the smallest.
     """
     corners = hull_points(vertices)
-    own = smallest_box_axes(corners, samples)
+    # The smallest box has a face along a large flat direction of the surface.
+    tried = [_rectangle_axes(corners, normal) for normal in (*_flat_directions(samples), UP)]
+    own = min(tried, key=lambda axes: _box_volume(corners, axes))
     limit = (1.0 + config.volume_slack) * _box_volume(corners, own)
     axes = next((frame for frame in preferred if _box_volume(corners, frame) <= limit), own)
     local = corners @ axes.T
     lower, upper = local.min(axis=0), local.max(axis=0)
-    slab_lower, slab_upper = _slab(lower, upper, axes, samples, config)
+    # What sticks out along the direction in which the bulk of the part is thinnest is cut off.
+    spans = [_dense_span(lower[k], upper[k], axes[k], samples, config) for k in range(3)]
+    thin = int(np.argmin([high - low for low, high in spans]))
+    slab_lower, slab_upper = lower.copy(), upper.copy()
+    slab_lower[thin], slab_upper[thin] = spans[thin]
     return BoxFrame(axes=axes, lower=lower, upper=upper, slab_lower=slab_lower, slab_upper=slab_upper)
 
 
@@ -127,12 +133,6 @@ def hull_points(points: FloatArray) -> FloatArray:
         return np.asarray(points[ConvexHull(points).vertices])
     except (QhullError, ValueError):
         return np.unique(points, axis=0)
-
-
-def smallest_box_axes(corners: FloatArray, samples: SurfaceSamples) -> FloatArray:
-    """Axes of the smallest box that has a face along a large flat direction of the surface, one per row, (3, 3)."""
-    candidates = [_rectangle_axes(corners, normal) for normal in (*_flat_directions(samples), UP)]
-    return min(candidates, key=lambda axes: _box_volume(corners, axes))
 
 
 def _flat_directions(samples: SurfaceSamples, count: int = 6) -> list[FloatArray]:
@@ -181,17 +181,6 @@ def _box_volume(corners: FloatArray, axes: FloatArray) -> float:
     """Volume of the box around points along `axes`; flat boxes are compared as if 1/200 thick."""
     extents = np.ptp(corners @ axes.T, axis=0)
     return float(np.prod(np.maximum(extents, 0.005 * extents.max())))
-
-
-def _slab(
-    lower: FloatArray, upper: FloatArray, axes: FloatArray, samples: SurfaceSamples, config: FramesConfig
-) -> tuple[FloatArray, FloatArray]:
-    """Cut off what sticks out along the direction in which the bulk of the part is thinnest."""
-    slab_lower, slab_upper = lower.copy(), upper.copy()
-    spans = [_dense_span(lower[k], upper[k], axes[k], samples, config) for k in range(3)]
-    thin = int(np.argmin([high - low for low, high in spans]))
-    slab_lower[thin], slab_upper[thin] = spans[thin]
-    return slab_lower, slab_upper
 
 
 def _dense_span(

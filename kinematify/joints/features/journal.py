@@ -21,7 +21,6 @@ from kinematify.robot.vectors import crossed, lengths_of, triangle_normals, unit
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig, JournalConfig
-    from kinematify.joints.bearings.line import Lines
     from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
 
@@ -100,30 +99,19 @@ def find_journal(facing: SurfaceSamples, size: float, config: JournalConfig) -> 
     """
     if len(facing.areas) < _LEAST:
         return None
-    lines, along = _proposals(facing, config, np.random.default_rng(0))
-    radii = np.abs(along)
-    keep = radii < config.largest * size
-    best: Journal | None = None
-    for frame, pivot, radius in zip(line_frames(lines.axes[keep]), lines.points[keep], radii[keep], strict=True):
-        found = _journal(facing, frame, pivot, radius, config)
-        if found is not None and (best is None or _merit(found) > _merit(best)):
-            best = found
-    return _refined(facing, best, config) if best is not None else None
-
-
-def _merit(journal: Journal) -> float:
-    return journal.coverage * journal.span
-
-
-def _proposals(facing: SurfaceSamples, config: JournalConfig, rng: np.random.Generator) -> tuple[Lines, FloatArray]:
-    """Lines where normals of neighbouring faces meet, and how far the first ones lie from them (`meeting_lines`)."""
-    tree = cKDTree(facing.points)
+    # Lines where normals of neighbouring faces meet, and how far the first ones lie from them (`meeting_lines`).
+    rng, tree = np.random.default_rng(0), cKDTree(facing.points)
     first = rng.integers(len(facing.areas), size=config.pairs)
     neighbours = tree.query(facing.points[first], k=min(config.neighbours, len(facing.areas)))[1]
     second = np.take_along_axis(neighbours, rng.integers(neighbours.shape[1], size=(config.pairs, 1)), axis=1)[:, 0]
     once = np.sort(np.unique(first * len(tree.data) + second, return_index=True)[1])
-    first, second = first[once], second[once]
-    return meeting_lines(facing.points, facing.normals, (first, second), config.least_sine)
+    lines, along = meeting_lines(facing.points, facing.normals, (first[once], second[once]), config.least_sine)
+    radii = np.abs(along)
+    keep = radii < config.largest * size
+    tried = zip(line_frames(lines.axes[keep]), lines.points[keep], radii[keep], strict=True)
+    found = [held for line in tried if (held := _journal(facing, *line, config)) is not None]
+    best = max(found, key=lambda held: held.coverage * held.span, default=None)
+    return None if best is None else _refined(facing, best, config)
 
 
 def _journal(

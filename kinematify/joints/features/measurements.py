@@ -77,17 +77,10 @@ class MeasuredHypotheses:
         h = self.hypotheses
         return lengths_of(crossed(points[None] - h.pivots[:, None], h.axes[:, None]))
 
-    def velocity(self, points: FloatArray) -> FloatArray:
-        """First motion of points (n, 3) by each hypothesis, shape (h, n, 3); zero for fixed."""
+    def velocity(self, point: FloatArray) -> FloatArray:
+        """First motion of a point (3,) by each hypothesis, shape (h, 3); zero for fixed."""
         h = self.hypotheses
-        turned = crossed(h.axes[:, None], points[None] - h.pivots[:, None])
-        straight = np.broadcast_to(h.axes[:, None], turned.shape)
-        return np.where((h.kinds == TURN)[:, None, None], turned, straight)
-
-    def amounts(self) -> FloatArray:
-        """Size of every step of every hypothesis [rad or m], shape (h, steps)."""
-        turns = (self.hypotheses.kinds == TURN)[:, None]
-        return np.where(turns, _TURNS, _SLIDES * self.unit)
+        return np.where((h.kinds == TURN)[:, None], crossed(h.axes, point - h.pivots), h.axes)
 
     def moved(self, points: FloatArray, amounts: FloatArray) -> FloatArray:
         """Points (n, 3) or (h, n, 3) after each hypothesis has moved by its amount (h,), shape (h, n, 3)."""
@@ -101,7 +94,7 @@ class MeasuredHypotheses:
     @cached_property
     def steps(self) -> list[tuple[int, int, FloatArray]]:
         """Side (0 forward, 1 backward), step and amounts (h,) of every pose that is tried."""
-        amounts = self.amounts()
+        amounts = np.where((self.hypotheses.kinds == TURN)[:, None], _TURNS, _SLIDES * self.unit)
         return [(side, k, sign * amounts[:, k]) for side, sign in enumerate((1.0, -1.0)) for k in range(len(_TURNS))]
 
     @cached_property
@@ -185,12 +178,12 @@ def contact_motion(m: MeasuredHypotheses) -> _Found:
     for side, k, amounts in m.steps:
         if k not in (_SMALL, _LARGE):
             continue
-        moved = m.moved(points, amounts)
+        moved, found = m.moved(points, amounts), values[:, side, int(k == _LARGE)]
         gap = scene.cache.distances(scene.parent, moved.reshape(-1, 3)).reshape(moved.shape[:2])
-        kept = gap < before + tolerance
-        values[:, side, int(k == _LARGE), 0] = (gap[:, : len(own)].min(axis=1) - before[: len(own)].min()) / m.unit
-        values[:, side, int(k == _LARGE), 1] = kept[:, len(own) :].mean(axis=1) if len(touching) else 0.0
-        values[:, side, int(k == _LARGE), 2] = (gap[:, : len(own)] - before[: len(own)]).mean(axis=1) / m.unit
+        kept, of_own, at_rest = gap < before + tolerance, gap[:, : len(own)], before[: len(own)]
+        found[:, 0] = (of_own.min(axis=1) - at_rest.min()) / m.unit
+        found[:, 1] = kept[:, len(own) :].mean(axis=1) if len(touching) else 0.0
+        found[:, 2] = (of_own - at_rest).mean(axis=1) / m.unit
     rows = np.arange(len(h))
     for k, step in enumerate(("small", "large")):
         for j, name in enumerate(("gap", "kept", "leaving")):
@@ -203,26 +196,18 @@ def bearing(m: MeasuredHypotheses) -> _Found:
     """Support of the bearing that proposed the line, or lies nearest to it, and of the rail along it."""
     h, scene = m.hypotheses, m.scene
     names = ("score", "surface", "circles", "surface_least", "circles_least", "axis")
-    values: _Found = {f"bearing_{name}": np.zeros(len(h)) for name in names}
+    values = np.zeros((len(names), len(h)))
     for line in scene.lines:
         cosine = np.abs(h.axes @ line.axis)
         apart = lengths_of(crossed(line.pivot - h.pivots, line.axis)) / m.unit
         same = (cosine > np.cos(np.radians(2.0))) & ((apart < 0.02) | (h.kinds == SLIDE))
-        numbers = (
-            same * line.score,
-            same * line.surface,
-            same * line.circles,
-            same * min(line.surfaces),
-            same * min(line.rings),
-            line.score * (cosine > 0.999),
-        )
-        for name, number in zip(values, numbers, strict=True):
-            values[name] = np.maximum(values[name], number)
+        supports = (line.score, line.surface, line.circles, min(line.surfaces), min(line.rings))
+        values = np.maximum(values, [*(same * support for support in supports), line.score * (cosine > 0.999)])
     rail = scene.rail
     return {
-        **values,
+        **{f"bearing_{name}": value for name, value in zip(names, values, strict=True)},
         "bearing_best": max((line.score for line in scene.lines), default=0.0),
-        "rail_best": 0.0 if rail is None else rail.score,
+        "rail_best": scene.rail_score,
         "rail_along": 0.0 if rail is None else np.where(np.abs(h.axes @ rail.axis) > 0.999, rail.score, 0.0),
         "rail_lead": scene.rail_lead,
         "journal": 0.0 if scene.journal is None else scene.journal.coverage,
@@ -242,17 +227,20 @@ def place(m: MeasuredHypotheses) -> _Found:
     points = m.child.points[:: max(1, len(m.child.points) // 300)]
     radius = m.radii(points)
     reach = np.maximum(radius.max(axis=1), _TINY)
-    length = (np.abs(h.axes @ frame.axes.T) @ frame.extents) / m.unit
+    cosines = np.abs(h.axes @ frame.axes.T)
+    length = (cosines @ frame.extents) / m.unit
     body = scene.body_box
     size = np.maximum(body[1] - body[0], 0.01 * m.unit)
     foot = scene.centre - m.arms
     in_body = (foot @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
-    in_body = np.where(np.abs(h.axes @ frame.axes.T) < 0.7, np.abs(in_body), 0.0)
+    in_body = np.where(cosines < 0.7, np.abs(in_body), 0.0)
     steps = np.linspace(-0.9, 0.9, 7)
     span = 0.5 * length * m.unit
     probes = foot[:, None] + steps[None, :, None] * (span[:, None] * h.axes)[:, None]
-    to_parent = scene.cache.distances(scene.parent, probes.reshape(-1, 3)).reshape(len(h), -1) / m.unit
-    to_child = scene.cache.distances(scene.child, probes.reshape(-1, 3)).reshape(len(h), -1) / m.unit
+    to_parent, to_child = (
+        scene.cache.distances(part, probes.reshape(-1, 3)).reshape(len(h), -1) / m.unit
+        for part in (scene.parent, scene.child)
+    )
     sides = ("short", "middle", "long")
     return {
         **{f"along_{name}": along[:, k] for k, name in enumerate(sides)},
@@ -307,6 +295,7 @@ def child_shape(m: MeasuredHypotheses) -> _Found:
     facing = np.abs(m.child.normals @ scene.frame.axes.T) > np.cos(np.radians(12.0))
     parent_sides = np.sort(scene.parent_frame.extents)
     shares = np.sort(facing.mean(axis=0))
+    thin, slim = np.log(np.maximum(parent_sides[:2] / np.maximum(parent_sides[1:], _TINY), 1e-4))
     edge = scene.cache.graph.by_pair.get(pair(scene.parent, scene.child))
     return {
         "thin": np.log(sides[0] / sides[1]),
@@ -318,8 +307,8 @@ def child_shape(m: MeasuredHypotheses) -> _Found:
         "size_parent": np.log(scene.frame.diagonal / max(scene.parent_frame.diagonal, _TINY)),
         "size_whole": np.log(scene.frame.diagonal / scene.diagonal),
         "longest_parent": np.log(sides[2] / max(float(parent_sides[2]), _TINY)),
-        "parent_thin": np.log(max(float(parent_sides[0] / max(parent_sides[1], _TINY)), 1e-4)),
-        "parent_slim": np.log(max(float(parent_sides[1] / max(parent_sides[2], _TINY)), 1e-4)),
+        "parent_thin": thin,
+        "parent_slim": slim,
         "sticking_out": scene.frame.diagonal / max(float(np.linalg.norm(scene.frame.extents)), _TINY),
         "contact_share_of_child": len(scene.contact.points) / max(len(m.child.points), 1),
         "gap": (scene.diagonal if edge is None else edge.gap) / m.unit,
@@ -358,20 +347,20 @@ def gravity(m: MeasuredHypotheses) -> _Found:
     arms = -m.arms
     length = np.maximum(lengths_of(arms), 1e-9 * m.unit)
     sign = np.where(m.better == 0, 1.0, -1.0)
-    velocity = m.velocity(m.scene.centre[None])[:, 0] * sign[:, None]
-    speed = np.maximum(lengths_of(velocity), 1e-9 * m.unit)
+    velocity = m.velocity(m.scene.centre) * sign[:, None]
+    way = velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None]
     out = (m.scene.centre - m.scene.parent_bounds.mean(axis=0)) / m.unit
     whole = m.scene.centre - m.scene.cache.assembly.bounds.mean(axis=0)
-    away = m.scene.outward
+    away, far = m.scene.outward, max(float(np.linalg.norm(out)), _TINY)
     return {
         "line_above": arms[:, 2] / length,
         "line_above_far": arms[:, 2] / m.unit,
-        "rises": velocity[:, 2] / speed,
-        "leaves_parent": (velocity / speed[:, None]) @ out / max(float(np.linalg.norm(out)), _TINY),
-        "leaves_whole": (velocity / speed[:, None]) @ whole / max(float(np.linalg.norm(whole)), _TINY),
-        "leaves_panel": (velocity / speed[:, None]) @ away,
+        "rises": way[:, 2],
+        "leaves_parent": way @ out / far,
+        "leaves_whole": way @ whole / max(float(np.linalg.norm(whole)), _TINY),
+        "leaves_panel": way @ away,
         "along_outward": np.abs(m.hypotheses.axes @ away),
-        "along_out": np.abs(m.hypotheses.axes @ out) / max(float(np.linalg.norm(out)), _TINY),
+        "along_out": np.abs(m.hypotheses.axes @ out) / far,
     }
 
 

@@ -221,6 +221,9 @@ def _gravity_cues(scene: JointScene, lines: Hypotheses, with_parent: Sweep) -> d
     free = with_parent.free(0.03)
     velocity = crossed(lines.axes, arms * -1.0)[:, 2] / _reach(scene, lines)
     rise = np.where(free[:, 0] >= free[:, 1], velocity, -velocity)
+    pedal = scene.pedal_direction
+    half = 0.5 * float(np.abs(scene.frame.axes @ pedal) @ scene.frame.extents)
+    across = (vertical < 0.1) & (np.abs(lines.axes @ pedal) < 0.5)
     return {
         "door_vertical": door * (vertical > 0.9),
         "door_tall": door * tallness * (vertical > 0.9),
@@ -229,15 +232,9 @@ def _gravity_cues(scene: JointScene, lines: Hypotheses, with_parent: Sweep) -> d
         "lid_rise": lid * rise,
         "lid_backrest": lid * _body_behind(scene, arms),
         "lid_behind": -lid * (arms @ scene.front) / np.maximum(length, 1e-9 * scene.diagonal),
-        "pedal": _heel(scene, lines, arms),
+        # From -1 at the tip of a pedal to 1 at its end inside the body.
+        "pedal": np.where(across, np.clip(-arms @ pedal / max(half, 1e-12), -1.0, 1.0), 0.0),
     }
-
-
-def _heel(scene: JointScene, lines: Hypotheses, arms: FloatArray) -> FloatArray:
-    """Level lines across a pedal, from -1 at its tip to 1 at its end inside the body, shape (c,)."""
-    half = 0.5 * float(np.abs(scene.frame.axes @ scene.pedal_direction) @ scene.frame.extents)
-    across = (np.abs(lines.axes @ UP) < 0.1) & (np.abs(lines.axes @ scene.pedal_direction) < 0.5)
-    return np.where(across, np.clip(-arms @ scene.pedal_direction / max(half, 1e-12), -1.0, 1.0), 0.0)
 
 
 def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
@@ -259,6 +256,9 @@ def _shape_cues(scene: JointScene, lines: Hypotheses, near: FloatArray) -> dict[
     """
     frame = scene.frame
     thin = np.abs(lines.axes @ frame.thin_axis)
+    off = lengths_of(lines.arms(scene.centre)) / float(frame.extents.max())
+    built = np.concatenate([frame.axes, scene.parent_frame.axes])
+    nearest = np.minimum(np.abs(lines.axes @ built.T).max(axis=1), 1.0)
     along = np.abs(lines.axes @ frame.axes.T) @ frame.extents / max(float(frame.extents.max()), 1e-12)
     place, source = lines.places, lines.sources
     turned = np.maximum(_roundness(scene, lines), scene.disc * (place == CENTRE) * (thin > 0.99))
@@ -277,24 +277,9 @@ def _shape_cues(scene: JointScene, lines: Hypotheses, near: FloatArray) -> dict[
         "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _bearing_ratio(scene, lines) * near,
         "small_normal": max(scene.smallness, scene.compact) * normal * stands,
         "round": turned,
-        "rolling": _rolling(scene, lines),
-        "square": scene.mechanism * by_contact * _squareness(scene, lines),
+        "rolling": 1.0 * ((thin > np.cos(np.radians(10.0))) & (off < 0.1) & scene.rolls),
+        "square": scene.mechanism * by_contact * np.interp(np.degrees(np.arccos(nearest)), (4.0, 8.0), (1.0, 0.0)),
     }
-
-
-def _squareness(scene: JointScene, lines: Hypotheses) -> FloatArray:
-    """1 for lines along an axis of the child's or the parent's frame, 0 from 8 deg off all of them, shape (c,)."""
-    axes = np.concatenate([scene.frame.axes, scene.parent_frame.axes])
-    nearest = np.minimum(np.abs(lines.axes @ axes.T).max(axis=1), 1.0)
-    return np.asarray(np.interp(np.degrees(np.arccos(nearest)), (4.0, 8.0), (1.0, 0.0)))
-
-
-def _rolling(scene: JointScene, lines: Hypotheses) -> FloatArray:
-    """1 for the lines through the middle of a wheel on the floor, along its axle, shape (c,)."""
-    frame = scene.frame
-    along = np.abs(lines.axes @ frame.thin_axis) > np.cos(np.radians(10.0))
-    off = lengths_of(lines.arms(scene.centre)) / float(frame.extents.max())
-    return np.asarray(along & (off < 0.1) & scene.rolls, dtype=np.float64)
 
 
 def _bearing_ratio(scene: JointScene, lines: Hypotheses) -> FloatArray:

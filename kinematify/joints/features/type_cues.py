@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.ranking import Ranked
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import IntArray
 
 
 WEIGHTS = {
@@ -109,19 +109,13 @@ def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked) -> dict[st
         # Links of machines overlap where they meet; guided are rods in bores that cannot turn as a whole either, and
         # what is extruded along its slide, nowhere round, and stopped within its clearance.
         blocked = float(turns.free_parent[0].max()) < np.radians(config.rails.pin_deg)
-        guided = blocked if scene.has_bearing else _extruded(scene, slides.axes[0]) and turn < 2.0 * least
+        along = scene.rail is not None and abs(float(scene.rail.axis @ slides.axes[0])) > 0.99
+        extruded = along and scene.rail_lead > config.rails.lead_full
+        guided = blocked if scene.has_bearing else extruded and turn < 2.0 * least
     return {
         "keyed": float(guided and goes(slide, turn)),
         "retained": float(goes(turn, slide)) * (1.0 - scene.smallness * (not scene.has_bearing)) * (not scene.serial),
     }
-
-
-def _extruded(scene: JointScene, direction: FloatArray) -> bool:
-    """True if the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
-    rail = scene.rail
-    return (
-        rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > scene.config.rails.lead_full
-    )
 
 
 def _near_best(scene: JointScene, turns: Ranked) -> IntArray:
@@ -137,34 +131,25 @@ def _near_best(scene: JointScene, turns: Ranked) -> IntArray:
 
 def _room_cues(scene: JointScene, slides: Ranked) -> dict[str, float]:
     """Where the part can go: a drawer leaves one way and stops the other."""
-    own = np.abs(slides.axes[0] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
-    travel = np.minimum(slides.free_parent[0] / max(float(own), 1e-9), 1.0)
-    level = float(1.0 - abs(float(slides.axes[0] @ UP)))
-    depth = float(_is_box(scene)) * _depth(scene, slides)
+    frame, way = scene.frame, slides.axes[0]
+    own = np.abs(slides.axes @ frame.axes.T) @ frame.extents / scene.diagonal
+    travel = np.minimum(slides.free_parent[0] / max(float(own[0]), 1e-9), 1.0)
+    level = float(1.0 - abs(float(way @ UP)))
+    # Drawers are deep: they reach along their best slide as far as over the smaller side of their front, or nearly so.
+    along, extents = np.abs(frame.axes @ way), frame.upper - frame.lower
+    face = np.sort(extents[np.argsort(-along)[1:]])
+    depth = float(_is_box(scene)) * float(along @ extents) / max(float(face[0]), 1e-12)
     box = float(np.interp(depth, _BOX, (0.0, 1.0)))
     furniture = (1.0 - scene.smallness) * (1.0 - scene.mechanism)
     one_way = float(travel.max() > 0.5) * float(np.clip(1.0 - 4.0 * travel.min(), 0.0, 1.0))
-    channel = float(travel.max() > 0.3) * _channel(scene, slides)
+    # Blocked at once across its best direction in three of four ways, or more.
+    across = np.abs(slides.axes @ way) < 0.1
+    blocked = slides.free_parent[across] < 0.1 * own[across, None]
+    channel = float(travel.max() > 0.3 and blocked.size > 0 and blocked.mean() > 0.7)
     return {
         "drawer": furniture * box * level * scene.inside * max(one_way, channel),
         "box_inside": furniture * box * scene.inside,
     }
-
-
-def _depth(scene: JointScene, slides: Ranked) -> float:
-    """Return the reach of a part along its best slide over the smaller side of its front: drawers are deep."""
-    along = np.abs(scene.frame.axes @ slides.axes[0])
-    extents = scene.frame.upper - scene.frame.lower
-    face = np.sort(extents[np.argsort(-along)[1:]])
-    return float(along @ extents) / max(float(face[0]), 1e-12)
-
-
-def _channel(scene: JointScene, slides: Ranked) -> float:
-    """1 where the part is blocked at once across its best direction in three of four ways, or more; 0 if in fewer."""
-    across = np.abs(slides.axes @ slides.axes[0]) < 0.1
-    sides = np.abs(slides.axes[across] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
-    blocked = slides.free_parent[across] < 0.1 * sides[:, None]
-    return float(blocked.mean() > 0.7) if blocked.size else 0.0
 
 
 def _is_box(scene: JointScene) -> bool:

@@ -79,13 +79,13 @@ class PartCache:
             samples: Surface samples per part.
             seed: Seed of the samples.
         """
-        self.assembly = assembly
-        self.graph = graph
-        self._samples = samples
-        self._seed = seed
-        self.samples = cache(self._sampled)
+        self.assembly, self.graph = assembly, graph
+        parts = assembly.parts
+        self.samples = cache(lambda part: sample_surface(parts[part], samples, seed))
         """Area-uniform surface samples of a part."""
-        self._scene, self._tree, self._solid = cache(self._new_scene), cache(self._new_tree), cache(self._new_solid)
+        self._scene = cache(self._new_scene)
+        self._tree = cache(lambda part: DistanceTree(parts[part].vertices, parts[part].faces))
+        self._solid = cache(lambda part: WindingTree(parts[part].vertices, parts[part].faces))
 
     @property
     def diagonal(self) -> float:
@@ -96,9 +96,6 @@ class PartCache:
         """Vertices of the faces of a part, world frame [m], shape (n, 3)."""
         mesh = self.assembly.parts[part]
         return mesh.vertices[np.unique(mesh.faces)]
-
-    def _sampled(self, part: int) -> SurfaceSamples:
-        return sample_surface(self.assembly.parts[part], self._samples, self._seed)
 
     @cached_property
     def upright_axes(self) -> FloatArray:
@@ -204,14 +201,6 @@ class PartCache:
         mesh, scene = self.assembly.parts[part], EmbreeScene()
         TriangleMesh(scene, mesh.vertices[mesh.faces].astype(np.float32))
         return scene
-
-    def _new_tree(self, part: int) -> DistanceTree:
-        mesh = self.assembly.parts[part]
-        return DistanceTree(mesh.vertices, mesh.faces)
-
-    def _new_solid(self, part: int) -> WindingTree:
-        mesh = self.assembly.parts[part]
-        return WindingTree(mesh.vertices, mesh.faces)
 
 
 CHILD, PARENT, OTHER, CARRIED = range(4)
