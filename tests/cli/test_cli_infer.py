@@ -70,7 +70,8 @@ def test_model_folder_is_complete(made: Made) -> None:
     assert {"model.urdf", "inference.json", "preview.png"} <= names
     assert names == set(made.answer["files"])
     assert (made.folder / "preview.png").stat().st_size > 10_000
-    assert Image.open(made.folder / "preview.png").width <= 1120  # more takes time that no page shows
+    with Image.open(made.folder / "preview.png") as picture:
+        assert picture.width <= 1120  # more takes time that no page shows
     assert json.loads((made.folder / "inference.json").read_text())["schema"] >= 1
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import expit
 
 from kinematify.joints.candidate import FIXED, SLIDE, TURN, JointCandidate, JointType
 from kinematify.joints.choice.opening import rigid_odds
@@ -28,7 +29,7 @@ _SAME_COSINE = float(np.cos(np.radians(5.0)))
 _SAME_LINE = 0.02
 _ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
 _DISTANCE = 0.05  # of the child's diagonal, the same for a line
-_SURER = 1.33  # power of what the models say: each errs where others do not, and their mean is too unsure
+_SURER = 1.33  # power of what the models say together: each errs where others do not, and their mean is too unsure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,11 +52,11 @@ class Posterior:
 
     @cached_property
     def posterior(self) -> FloatArray:
-        """Probabilities after the power and the lead that what cues would choose has, shape (h,).
+        """Probabilities after the lead that what cues would choose has, shape (h,).
 
         On what neither has seen, cues are right more often where the fit is not clearly surer (`results/choice.md`).
         """
-        led = self.prior**_SURER * np.exp(self.prior_log_odds * self._same[self.by_cues])
+        led = self.prior * np.exp(self.prior_log_odds * self._same[self.by_cues])
         return np.asarray(led / led.sum())
 
     @cached_property
@@ -117,12 +118,13 @@ class Posterior:
     @property
     def confidence(self) -> float:
         """Return how likely type and direction are right: of all hypotheses that agree with the best one in both."""
-        return float(min(self.posterior[self._agree[self.best]].sum(), 1.0))
+        surer = replace(self, prior=self.prior**_SURER).posterior
+        return float(min(surer[self._agree[self.best]].sum(), 1.0))
 
     @property
     def odds_prismatic(self) -> float:
-        """Log odds of sliding against turning, before power and lead."""
-        slide, turn = (max(self.prior[self.hypotheses.kinds == kind].sum(), 1e-9) for kind in (SLIDE, TURN))
+        """Log odds of sliding against turning."""
+        slide, turn = (max(self.posterior[self.hypotheses.kinds == kind].sum(), 1e-9) for kind in (SLIDE, TURN))
         return float(np.log(slide / turn))
 
     def alternatives(self, count: int) -> tuple[JointCandidate, ...]:
@@ -169,12 +171,12 @@ def judge(features: Features, config: ConfidenceConfig) -> Posterior:
     odds = rigid_odds(hypotheses.kinds, columns)
     said = kind_said(scene.cache.assembly.parts[scene.child].name)
     if said is not None:
-        likely = likely * np.exp(config.name_weight * (hypotheses.kinds == said))
+        likely *= np.exp(config.name_weight * (hypotheses.kinds == said))
         odds += config.name_weight if said == FIXED else -config.name_weight
     return Posterior(
         hypotheses=hypotheses,
         prior=likely / likely.sum(),
-        fixed=float(1.0 / (1.0 + np.exp(-odds))),
+        fixed=float(expit(odds)),
         by_cues=features.by_cues,
         support=columns["rules_score"],
         size=scene.frame.diagonal,
@@ -235,7 +237,7 @@ def agreed(kinds: Sequence[IntArray], likely: Sequence[FloatArray]) -> list[Floa
         The new probabilities, sum 1, shape (h,) each.
     """
     of_types = [
-        [max(float(probability[kind == each].sum()), _LEAST) for each in (FIXED, TURN, SLIDE)]
+        [max(probability[kind == each].sum(), _LEAST) for each in (FIXED, TURN, SLIDE)]
         for kind, probability in zip(kinds, likely, strict=True)
     ]
     logs = np.log(np.array(of_types))

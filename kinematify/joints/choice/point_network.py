@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import log_softmax
 
-from kinematify.joints.candidate import SLIDE, TURN
+from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.workspace import CARRIED, CHILD, OTHER, PARENT
 from kinematify.robot.vectors import crossed, lengths_of
@@ -129,14 +129,17 @@ class PointNetwork(SetNetwork):
     third_bias: FloatArray
 
     def log_probabilities(self, cloud: Cloud, hypotheses: Hypotheses) -> FloatArray:
-        """Mean log probability of each hypothesis among these, none of which is fixed, shape (h,)."""
-        points, lines = point_inputs(cloud, hypotheses, np.arange(len(hypotheses)))
+        """Mean log probability of each hypothesis among those that move, one at least, shape (h,); -inf for fixed."""
+        moving = np.flatnonzero(hypotheses.kinds != FIXED)
+        points, lines = point_inputs(cloud, hypotheses, moving)
         groups = point_groups(cloud.labels)
         scores = []
         for k, score in enumerate(self.score):
             pooled = [self._pooled(k, points[i : i + _AT_ONCE], groups) for i in range(0, len(points), _AT_ONCE)]
             scores.append(self.compared(k, np.concatenate([np.concatenate(pooled), lines], axis=1)) @ score)
-        return np.asarray(log_softmax(np.array(scores, dtype=np.float64), axis=1).mean(axis=0))
+        found = np.full(len(hypotheses), -np.inf)
+        found[moving] = log_softmax(np.array(scores, dtype=np.float64), axis=1).mean(axis=0)
+        return found
 
     def _pooled(self, k: int, points: NDArray[Any], groups: list[IntArray]) -> NDArray[Any]:
         """Mean and greatest of what one of the networks says of the points of each group, shape (n, 6 q)."""

@@ -50,7 +50,6 @@ NETWORK, POINTS = "network_", "points_"
 """Before the names of the arrays of either network in a file of weights."""
 POINTS_SHARE = 0.5
 """How much the points count in the mean log probability of what moves; trees and network share the rest."""
-_BEHIND = 5.0  # in log probability: what trees and network put so far behind the best, points are not asked about
 _ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
 FORMAT = 2
 """Raised where the meaning of the file changes."""
@@ -86,7 +85,7 @@ class Scorer:
     network: Network | None = None
     """Asked beside the trees which hypothesis is right; without it, trees answer alone."""
     points: PointNetwork | None = None
-    """Asked which of those that move, and that the others do not rule out, is right; None as above."""
+    """Asked which of those that move is right; None as above."""
 
     def probabilities(self, hypotheses: Hypotheses, measured: Mapping[str, FloatArray], cloud: Cloud) -> FloatArray:
         """Return how likely each hypothesis of an edge is the right one.
@@ -108,10 +107,9 @@ class Scorer:
         moving = kinds != FIXED
         if self.points is None or not moving.any():
             return likely
-        asked = np.flatnonzero(moving & (logs > logs[moving].max() - _BEHIND))
-        seen = self.points.log_probabilities(cloud, hypotheses.at(asked))
-        shared = softmax((1.0 - POINTS_SHARE) * logs[asked] + POINTS_SHARE * seen)
-        likely[asked] = float(likely[asked].sum()) * shared
+        seen = self.points.log_probabilities(cloud, hypotheses)[moving]
+        shared = softmax((1.0 - POINTS_SHARE) * logs[moving] + POINTS_SHARE * seen)
+        likely[moving] = likely[moving].sum() * shared
         return likely
 
     def sums(self, columns: NDArray[Any]) -> FloatArray:
