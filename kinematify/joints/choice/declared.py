@@ -181,7 +181,7 @@ class JudgedJoint:
     @property
     def best_other(self) -> int:
         """Position of the best candidate of the other type."""
-        return self._best(SLIDE + TURN - self._kind)
+        return self._best(TURN if self.slides else SLIDE)
 
     @property
     def alone(self) -> bool:
